@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "reference/box2d/simulation.h"
+
+namespace carom::box2d {
+
+namespace {
+
+/// Box2D 2.4: circles in the plane, in single precision, with a fixed step.
+class Box2dEngine final : public Engine {
+ public:
+  EngineInfo info() const override {
+    EngineInfo info;
+    info.name = "box2d";
+    info.about = "Erin Catto's 2D engine: sequential impulses with a fixed step";
+    info.version = CAROM_BOX2D_VERSION;
+    info.precision = "float32";
+    info.profiles = {
+        {"faithful", "every threshold, damping, sleep and margin set for fidelity"},
+        {"default", "the settings of its manual's first example"},
+    };
+    info.cannot = {
+        {Feature::space, "Box2D is two-dimensional"},
+        {Feature::tangential_restitution, "its friction law has no tangential rebound"},
+        {Feature::slab, "the adapter makes walls only"},
+        {Feature::barrier, "no rigid-body engine tunnels"},
+        {Feature::events, "the adapter does not change balls while it runs"},
+    };
+    return info;
+  }
+
+  std::string refuses(const Scenario& scenario, std::string_view profile) const override {
+    const Setup setup = setup_for(scenario, profile);
+    const double step_s = reference::first_step_s(scenario);
+    const double travel_m = reference::initial_speed_mps(scenario) * step_s;
+    // A newcomer's world is clamped without a word; that is one of its results.
+    if (profile == "faithful" && travel_m * setup.length_scale > b2_maxTranslation) {
+      return fmt::format("a ball moves {:.3g} m in a step; Box2D holds balls of this size to {:.3g} m",
+                         travel_m, b2_maxTranslation / setup.length_scale);
+    }
+    const double turn_rad = reference::initial_spin_radps(scenario) * step_s;
+    if (profile == "faithful" && turn_rad > b2_maxRotation) {
+      return fmt::format("a ball turns {:.3g} rad in a step; Box2D holds it to {:.3g}", turn_rad,
+                         b2_maxRotation);
+    }
+    return {};
+  }
+
+  std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const override {
+    return std::make_unique<Box2dSimulation>(scenario, setup_for(scenario, profile));
+  }
+};
+
+}  // namespace
+
+}  // namespace carom::box2d
+
+CAROM_ENGINE_MODULE(carom::box2d::Box2dEngine)

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "engine/engine.h"
+#include "reference/common/scene_scale.h"
+
+namespace carom::bullet {
+
+/// Machine epsilon of the precision that Bullet was built in.
+constexpr double kEpsilon = std::numeric_limits<btScalar>::epsilon();
+
+/// Everything in which the profiles differ. CONVENTIONS.md says why each value is what it is.
+struct Setup {
+  double length_scale = 1.0;           ///< Bullet length units per metre of the scene, a power of two
+  double restitution_threshold = 0.2;  ///< Bullet length units per second
+  int iterations = 10;
+  double erp2 = 0.2;
+  bool split_impulse = true;
+  double warm_starting_factor = 0.85;
+  bool fresh_points = false;  ///< forget the contact points of earlier steps before each step
+  bool gyroscopic = true;
+  bool sleeping = true;
+  bool bounded_planes = false;  ///< walls are only tested against balls near them; else against all
+  double contact_processing_threshold = BT_LARGE_FLOAT;  ///< Bullet length units
+  double ccd_motion_threshold_radii = 0.0;               ///< 0: no continuous collision
+  double ccd_swept_radius_radii = 0.0;
+};
+
+// Bullet holds a body's rotation to a quarter turn per step.
+constexpr double kMaxTurn_rad = SIMD_HALF_PI;
+// Bullet takes a step of this length or less, in seconds, for none at all.
+constexpr double kShortestStep_s = kEpsilon;
+// Damping is the float nearest to 1 - e^{-c/m}; the velocity left after a second, e^{-c/m}, keeps this
+// relative accuracy or the scene is refused.
+constexpr double kDampingAccuracy = 1e-3;
+// A ball that moves more than its radius in a step is fast. Two balls below that close in by r_a + r_b at
+// most, the depth through which they overlap and still approach, so that none jumps through another's centre.
+constexpr double kFastRadiiPerStep = 1.0;
+// A fast ball is swept as a sphere of this part of its radius, so that it stops where it overlaps and the
+// next step's detection sees it; with its full radius it would stop where it only touches, and be missed.
+constexpr double kSweptRadii = 0.5;
+// Bullet's absolute margins suit bodies of 0.05 to 10 units, so the smallest ball gets about this radius.
+constexpr double kRadiusUnits = 0.5;
+
+inline Setup setup_for(const Scenario& scene, std::string_view profile) {
+  Setup setup;
+  if (profile == "default") return setup;
+  // Rounding down to a power of two costs up to a factor of two, so the target is the upper end.
+  setup.length_scale =
+      reference::power_of_two_below(std::sqrt(2.0) * kRadiusUnits / reference::smallest_radius_m(scene));
+  setup.restitution_threshold = 0.0;
+  setup.iterations = 50;
+  setup.erp2 = 0.0;
+  setup.split_impulse = false;
+  setup.warm_starting_factor = 0.0;
+  setup.fresh_points = true;
+  setup.gyroscopic = false;
+  setup.sleeping = false;
+  setup.bounded_planes = true;
+  setup.contact_processing_threshold = 0.0;
+  setup.ccd_motion_threshold_radii = kFastRadiiPerStep;
+  setup.ccd_swept_radius_radii = kSweptRadii;
+  return setup;
+}
+
+}  // namespace carom::bullet

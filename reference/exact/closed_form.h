@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "engine/engine.h"
+
+namespace carom {
+
+/// The engine "closed-form": exact solutions, for scenes that have one. It shares no code with any engine
+/// that it is the truth for. Its simulations jump to the time asked for.
+std::unique_ptr<Engine> make_closed_form_engine();
+
+}  // namespace carom

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/engine.h"
+#include "reference/exact/twofold.h"
+
+namespace carom::exact {
+
+/// The motion of every ball of a scene in closed form. Spins are no part of it: every family is frictionless
+/// wherever surfaces touch, so that spins keep their initial values.
+class Motion {
+ public:
+  Motion() = default;
+  Motion(const Motion&) = delete;
+  Motion& operator=(const Motion&) = delete;
+  virtual ~Motion() = default;
+
+  virtual std::string_view family() const = 0;
+
+  /// Positions and velocities at a moment; at the moment of an impact, those after it. @pre 0 <= time_s, and
+  /// no later than the scene's duration but for its rounding.
+  virtual void evaluate(const Twofold& time_s, std::span<BallState> balls) const = 0;
+
+  /// What happened up to and including a moment.
+  virtual Tally tally(const Twofold& time_s) const = 0;
+
+  /// A bound on the error of every position up to the scene's duration.
+  virtual double uncertainty_m() const = 0;
+};
+
+/// What a family makes of a scene: its motion; or why the scene is beyond it; or neither, where the scene is
+/// not of the family's kind.
+struct Attempt {
+  std::unique_ptr<Motion> motion;
+  std::string reason;
+};
+
+/// Every axis by itself: uniform or uniformly accelerated, between walls across it.
+Attempt try_separable(const Scenario& scenario);
+/// Flight through a resisting medium that meets nothing.
+Attempt try_drag(const Scenario& scenario);
+/// Any number of balls on one line, with walls across it.
+Attempt try_line(const Scenario& scenario);
+/// Two balls that meet once.
+Attempt try_pair(const Scenario& scenario);
+
+}  // namespace carom::exact

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "reference/exact/twofold.h"
+
+namespace carom::exact {
+
+/// Of stretches in the order of their `start_s`, the one that a moment falls into. @pre not empty, and the
+/// first starts no later than that.
+template <class Stretch>
+const Stretch& stretch_at(const std::vector<Stretch>& stretches, const Twofold& time_s) {
+  const auto later = std::upper_bound(std::next(stretches.begin()), stretches.end(), time_s,
+                                      [](const Twofold& t, const Stretch& s) { return t < s.start_s; });
+  return *std::prev(later);
+}
+
+}  // namespace carom::exact

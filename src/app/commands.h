@@ -1,0 +1,17 @@
+#pragma once
+
+#include "app/options.h"
+
+namespace carom {
+
+/// The exit codes that scripts rely on.
+enum class ExitCode { holds = 0, violated = 1, bad_input = 2, machine_failed = 3 };
+
+/// carom list
+ExitCode list_command(const Options& options);
+
+/// carom run and carom check: load, run, compare, write what was asked for, print.
+/// @throws InputError before anything is run or written; MachineError.
+ExitCode compare_command(const Options& options);
+
+}  // namespace carom

@@ -1,0 +1,86 @@
+#include "app/engines.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "carom/carom_engine.h"
+#include "core/error.h"
+#include "engine/modules.h"
+#include "reference/engine_table.h"
+#include "reference/exact/closed_form.h"
+
+namespace carom {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+EngineSource module_source(const std::string& name, const fs::path& file) {
+  return {name, [file]() -> const Engine& { return open_engine_module(file); }};
+}
+
+std::vector<fs::path> modules_in(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw InputError(fmt::format("{}: no such folder of engine modules", folder.string()));
+  }
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".so") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+EngineCatalog::EngineCatalog(const fs::path& modules, const std::vector<std::string>& extra) {
+  sources_.push_back({"carom", []() -> const Engine& {
+                        static const std::unique_ptr<Engine> engine = make_carom_engine();
+                        return *engine;
+                      }});
+  for (const KnownEngine& known : kKnownEngines) {
+    const std::string name(known.name);
+    const fs::path file = modules / (name + ".so");
+    if (fs::exists(file)) {
+      sources_.push_back(module_source(name, file));
+    } else {
+      missing_.push_back({name, std::string(known.package)});
+    }
+  }
+  for (const std::string& folder : extra) {
+    for (const fs::path& file : modules_in(folder))
+      sources_.push_back(module_source(file.stem().string(), file));
+  }
+}
+
+std::vector<std::string> EngineCatalog::names() const {
+  std::vector<std::string> names;
+  for (const EngineSource& source : sources_) names.push_back(source.name);
+  for (const MissingEngine& engine : missing_) names.push_back(engine.name);
+  return names;
+}
+
+const EngineSource& EngineCatalog::find(const std::string& name) const {
+  for (const EngineSource& source : sources_) {
+    if (source.name == name) return source;
+  }
+  for (const MissingEngine& engine : missing_) {
+    if (engine.name == name) {
+      throw InputError(fmt::format("engine {} is not built: {} is not installed", name, engine.package));
+    }
+  }
+  std::vector<std::string> built;
+  for (const EngineSource& source : sources_) built.push_back(source.name);
+  throw InputError(fmt::format("no engine \"{}\"; allowed: {}", name, fmt::join(built, ", ")));
+}
+
+EngineSource closed_form_source() {
+  return {"closed-form", []() -> const Engine& {
+            static const std::unique_ptr<Engine> engine = make_closed_form_engine();
+            return *engine;
+          }};
+}
+
+}  // namespace carom

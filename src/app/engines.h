@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "comparison/results.h"
+#include "trajectory/record.h"
+
+namespace carom {
+
+/// Every engine that this program can run: the hand-written one, the reference engines that were built, and
+/// the modules of folders that the user names.
+class EngineCatalog {
+ public:
+  /// @param modules  the folder with the reference engines' modules
+  /// @param extra    folders with further modules; an engine is called like its file
+  EngineCatalog(const std::filesystem::path& modules, const std::vector<std::string>& extra);
+
+  const std::vector<EngineSource>& sources() const { return sources_; }
+  const std::vector<MissingEngine>& missing() const { return missing_; }
+
+  /// Names that a scene's gate may use, built or not.
+  std::vector<std::string> names() const;
+
+  const EngineSource& find(const std::string& name) const;  ///< @throws InputError with what there is
+
+ private:
+  std::vector<EngineSource> sources_;
+  std::vector<MissingEngine> missing_;
+};
+
+/// The engine that knows closed forms; the truth is recorded from it.
+EngineSource closed_form_source();
+
+}  // namespace carom

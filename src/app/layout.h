@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/files.h"
+
+namespace carom {
+
+// Where the program finds what belongs to it: the same places below a build folder and an installed prefix.
+
+inline std::filesystem::path engine_folder() {
+  return program_prefix() / "lib/carom/engines";
+}
+inline std::filesystem::path scenario_folder() {
+  return program_prefix() / "share/carom/scenarios";
+}
+inline std::filesystem::path web_folder() {
+  return program_prefix() / "share/carom/reports/web";
+}
+
+}  // namespace carom

@@ -1,0 +1,112 @@
+#include "app/options.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <thread>
+
+namespace carom {
+
+namespace {
+
+constexpr int kExitUsage = 2;
+
+void add_scene_options(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scenes, "an id, a path, a group (impact/), or all")->required();
+  command.add_option("--engine", options.engines, "an engine, or engine@profile; may be given several times")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--engines-from", options.engines_from, "a folder with further engine modules (*.so)")
+      ->expected(1)
+      ->take_all();
+  command.add_option("--step", options.step_s, "the fixed step in s, instead of the scene's")
+      ->check(CLI::Range(1e-300, 1e300).description("a number > 0"));
+  command.add_option("--seed", options.seed, "the seed of every generator, instead of the scene's");
+  command.add_option("--json", options.json_file, "write the results as JSON to this file");
+  command.add_flag("--all-balls", options.all_balls, "list the final state of every ball in the JSON");
+}
+
+void add_common_options(CLI::App& command, Options& options) {
+  command.add_option("-j", options.parallel, "runs at a time (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--timeout", options.timeout_s, "the limit of one run in s")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1e9));
+  command.add_option("--memory", options.memory_mib, "the memory limit of one run in MiB")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 1e9));
+  command.add_flag("--quiet", options.quiet, "no progress, and no table where every gate holds");
+  command.add_flag_callback(
+      "--no-color", [&options] { options.color = false; }, "no colours (also: the NO_COLOR variable)");
+}
+
+/// CLI11 prints help through exceptions as well; the code tells them apart.
+int report(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+  fmt::print(stderr, "carom: {}\nTry: carom help\n", error.what());
+  return kExitUsage;
+}
+
+}  // namespace
+
+Parsed parse_options(int argc, char** argv) {
+  Parsed parsed;
+  Options& options = parsed.options;
+  options.parallel = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+  const char* no_color = std::getenv("NO_COLOR");
+  options.color = isatty(STDOUT_FILENO) == 1 && (no_color == nullptr || *no_color == '\0');
+
+  CLI::App app(
+      "Carom runs a hand-written ball-collision engine, Box2D, Bullet and closed forms on the same scenes "
+      "and "
+      "says where they part.");
+  app.name("carom");
+  app.set_version_flag("--version", std::string("carom ") + CAROM_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 every gate holds; 1 a gate is violated, or an engine under test\n"
+      "crashed, hung, gave NaN or cannot run a scene that gates it; 2 bad usage or bad\n"
+      "input; 3 the machine failed.");
+
+  CLI::App* list = app.add_subcommand("list", "what there is, with what each engine can and cannot do");
+  list->add_option("TOPIC", options.topic, "scenarios, engines or effects; nothing: all three")
+      ->check(CLI::IsMember({"scenarios", "engines", "effects"}));
+  list->add_option("--engines-from", options.engines_from, "a folder with further engine modules (*.so)")
+      ->expected(1)
+      ->take_all();
+  add_common_options(*list, options);
+
+  CLI::App* run = app.add_subcommand("run", "run side by side, compare, print a table");
+  add_scene_options(*run, options);
+  run->add_option("--csv", options.csv_folder, "write every trajectory as CSV below this folder");
+  run->add_option("--report", options.report_folder, "write the page DIR/index.html");
+  add_common_options(*run, options);
+
+  CLI::App* check = app.add_subcommand("check", "the CI gate: as run, and says which gate is violated");
+  add_scene_options(*check, options);
+  check->add_option("--junit", options.junit_file, "write JUnit XML to this file");
+  check->add_option("--summary", options.summary_file, "write a Markdown summary to this file");
+  add_common_options(*check, options);
+
+  CLI::App* help = app.add_subcommand("help", "help on a command");
+  help->add_option("COMMAND", options.topic, "list, run, check or help")
+      ->check(CLI::IsMember({"list", "run", "check", "help"}));
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    parsed.exit_code = report(app, error);
+    return parsed;
+  }
+  options.command = app.get_subcommands().front()->get_name();
+  if (options.command == "help") {
+    const CLI::App* about = options.topic.empty() ? &app : app.get_subcommand(options.topic);
+    fmt::print("{}", about->help());
+    parsed.exit_code = 0;
+  }
+  return parsed;
+}
+
+}  // namespace carom

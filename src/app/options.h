@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace carom {
+
+/// What the command line says.
+struct Options {
+  std::string command;  ///< "list", "run", "check" or "help"
+  std::string topic;    ///< of list and help
+
+  std::vector<std::string> scenes;
+  std::vector<std::string> engines;       ///< as written: "name" or "name@profile"
+  std::vector<std::string> engines_from;  ///< folders with further engine modules
+  std::optional<double> step_s;
+  std::optional<std::uint64_t> seed;
+
+  std::string json_file;
+  std::string csv_folder;
+  std::string report_folder;
+  std::string junit_file;
+  std::string summary_file;
+  bool all_balls = false;
+
+  int parallel = 1;
+  double timeout_s = 120.0;
+  double memory_mib = 4096.0;
+  bool quiet = false;
+  bool color = false;
+};
+
+/// The outcome of reading the command line: options, or what to print and the exit code to end with.
+struct Parsed {
+  Options options;
+  std::optional<int> exit_code;
+};
+
+/// Reads the command line; prints help, the version, or what is wrong with it.
+Parsed parse_options(int argc, char** argv);
+
+}  // namespace carom

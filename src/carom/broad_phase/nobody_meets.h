@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "carom/world.h"
+
+namespace carom {
+
+/// The broad phase of scenes without collisions between balls: no pair, no cost.
+template <int Dim>
+class NobodyMeets {
+ public:
+  static constexpr std::string_view kName = "none";
+
+  void build(const VectorColumn<Dim>& /*position*/, std::span<const double> /*bound*/) {}
+  template <class Visit>
+  void for_each_pair(Visit&& /*visit*/) const {}
+  void bound_grew(std::size_t /*ball*/) {}
+  template <class Visit>
+  void for_each_near(std::size_t /*ball*/, Visit&& /*visit*/) const {}
+};
+
+}  // namespace carom

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenario/metric.h"
+#include "scenario/scenario.h"
+#include "trajectory/trajectory.h"
+
+namespace carom {
+
+// The result of comparing the runs of one scene: data only, made by compare() (compare.h), read by the
+// reports.
+
+/// What a run is measured against, frame by frame. A closed form's trajectory, and how sure it is.
+struct Truth {
+  std::string kind = "none";        ///< "closed-form", …, or "none"
+  std::string reason;               ///< why there is none
+  double uncertainty_m = 0.0;       ///< a bound on the error of every position
+  std::optional<double> horizon_s;  ///< until when it is known; nothing: for the whole duration
+  Trajectory trajectory;
+  /// The same at times shortly before and shortly after each frame. At an impact velocities have two values,
+  /// and an engine that is right but for rounding may show either of them. Empty where there is nothing but
+  /// `trajectory`.
+  std::vector<Trajectory> around;
+
+  bool known() const { return kind != "none"; }
+};
+
+/// Where a run first leaves what it is compared with.
+struct Divergence {
+  double time_s = 0.0;
+  std::vector<std::size_t> balls;  ///< those that are off the most, at most two
+  Metric metric = Metric::position;
+};
+
+/// One limit held against one value.
+struct GateResult {
+  Metric metric = Metric::energy;
+  double limit = 0.0;
+  std::optional<double> value;  ///< nothing: the metric does not apply, and a gate on it cannot hold
+  bool holds = false;
+};
+
+enum class Verdict { pass, fail, shown, unsupported, error };
+
+/// A quantity over the frames of a run, for the plots; NaN where it does not apply.
+struct RunSeries {
+  std::vector<double> energy;    ///< (E - E_0) / E_scale, signed
+  std::vector<double> momentum;  ///< |P - P_expected| / P_scale
+  std::vector<double> position;  ///< m, max over balls against the truth
+};
+
+struct RunComparison {
+  Run run;
+  bool under_test = false;
+  Metrics metrics;
+  std::optional<Divergence> first_divergence;  ///< from the truth
+  std::vector<GateResult> gates;
+  Verdict verdict = Verdict::shown;
+  RunSeries series;
+
+  /// Whether this run makes the check fail.
+  bool violates() const {
+    return verdict == Verdict::fail || (verdict == Verdict::error && counts()) || refused();
+  }
+  bool counts() const { return under_test || !gates.empty(); }
+  bool refused() const { return verdict == Verdict::unsupported && !gates.empty(); }
+};
+
+/// Two engines against each other.
+struct PairComparison {
+  std::size_t a = 0;  ///< index into SceneComparison::runs
+  std::size_t b = 0;
+  double position_m = 0.0;  ///< max over balls and frames of |x_a - x_b|
+  double position_rms_m = 0.0;
+  std::optional<double> energy;    ///< max |E_a - E_b| / E_scale
+  std::optional<double> momentum;  ///< max |P_a - P_b| / P_scale
+  std::optional<Divergence> first_divergence;
+};
+
+struct SceneComparison {
+  ScenarioPtr scene;
+  Truth truth;
+  double position_tolerance_m = 0.0;  ///< beyond it two trajectories count as diverged
+  std::vector<RunComparison> runs;
+  std::vector<PairComparison> pairs;
+};
+
+/// The plain word for each state, as it stands in results.
+std::string_view name_of(Verdict verdict);
+std::string_view name_of(RunStatus status);
+
+}  // namespace carom

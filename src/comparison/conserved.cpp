@@ -1,0 +1,84 @@
+#include "comparison/conserved.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace carom {
+
+namespace {
+
+bool movable(const Ball& ball) {
+  return std::isfinite(ball.mass);
+}
+
+/// How far gravity pulls the ball down until a wall is in the way; 0 where there is none.
+double fall_depth(const Scenario& scenario, const Ball& ball) {
+  if (!scenario.effects.gravity || scenario.effects.gravity->isZero(0.0)) return 0.0;
+  const Vec3 down = scenario.effects.gravity->normalized();
+  double depth = std::numeric_limits<double>::infinity();
+  for (const Wall& wall : scenario.walls) {
+    const double closing = -wall.normal.dot(down);
+    if (closing <= 0.0) continue;
+    const double gap = wall.normal.dot(ball.position) - wall.offset - ball.radius;
+    depth = std::min(depth, std::max(gap, 0.0) / closing);
+  }
+  return std::isfinite(depth) ? depth : 0.0;
+}
+
+/// The farthest that any ball's surface is from the origin, m; the box's size where there is one.
+double scene_size(const Scenario& scenario, const Vec3& origin) {
+  if (scenario.box) return (scenario.box->max - scenario.box->min).norm();
+  double size = 0.0;
+  for (const Ball& ball : scenario.balls)
+    size = std::max(size, (ball.position - origin).norm() + ball.radius);
+  return size;
+}
+
+}  // namespace
+
+Reference::Reference(const Scenario& s) : scenario(&s) {
+  std::vector<BallState> states;
+  double momentum_sum = 0.0;
+  for (const Ball& ball : s.balls) {
+    states.push_back({ball.position, ball.velocity, ball.spin});
+    fall_m.push_back(fall_depth(s, ball));
+    if (!movable(ball)) continue;
+    mass_kg += ball.mass;
+    origin += ball.mass * ball.position;
+    origin_velocity += ball.mass * ball.velocity;
+    momentum_sum += ball.mass * ball.velocity.norm();
+  }
+  if (mass_kg > 0.0) {
+    origin /= mass_kg;
+    origin_velocity /= mass_kg;
+  }
+  start = of(states);
+  const double gravity_impulse = s.effects.gravity ? mass_kg * s.effects.gravity->norm() * s.duration_s : 0.0;
+  momentum_scale_Ns = momentum_sum > 0.0 ? momentum_sum : gravity_impulse;
+  energy_scale_J = start.energy_J;
+  if (energy_scale_J == 0.0 && mass_kg > 0.0) {
+    energy_scale_J = 0.5 * gravity_impulse * gravity_impulse / mass_kg;
+  }
+  angular_momentum_scale_Nms = momentum_scale_Ns * scene_size(s, origin);
+}
+
+Conserved Reference::of(std::span<const BallState> balls) const {
+  Conserved sum;
+  const Vec3 gravity = scenario->effects.gravity.value_or(Vec3::Zero());
+  const double g = gravity.norm();
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const Ball& ball = scenario->balls[i];
+    if (!movable(ball)) continue;
+    const BallState& state = balls[i];
+    const double moment = ball.inertia * ball.mass * ball.radius * ball.radius;
+    sum.energy_J += 0.5 * ball.mass * state.velocity.squaredNorm() + 0.5 * moment * state.spin.squaredNorm() +
+                    ball.mass * (g * fall_m[i] - gravity.dot(state.position - ball.position));
+    sum.momentum_Ns += ball.mass * state.velocity;
+    sum.angular_momentum_Nms +=
+        ball.mass * (state.position - origin).cross(state.velocity) + moment * state.spin;
+  }
+  return sum;
+}
+
+}  // namespace carom

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+
+#include "engine/engine.h"
+#include "scenario/scenario.h"
+
+namespace carom {
+
+/// The conserved quantities of a set of balls. Balls of infinite mass are left out: they are part of the
+/// surroundings, like the walls.
+struct Conserved {
+  double energy_J = 0.0;                     ///< kinetic (translation, rotation) and in the field of gravity
+  Vec3 momentum_Ns = Vec3::Zero();           ///< P
+  Vec3 angular_momentum_Nms = Vec3::Zero();  ///< L about Reference::origin
+};
+
+/// What the conserved quantities of a scene are measured from and against, computed from its first moment.
+///
+/// - Energy: the potential energy of a ball is zero where gravity would bring it to rest on a wall, and where
+/// it
+///   starts if no wall is below it. So E_0 is the energy that the scene can turn into motion.
+/// - Angular momentum is taken about the centre of mass at t = 0, a point at rest.
+struct Reference {
+  explicit Reference(const Scenario& scenario);
+
+  const Scenario* scenario;
+  Vec3 origin = Vec3::Zero();           ///< m, centre of mass at t = 0
+  Vec3 origin_velocity = Vec3::Zero();  ///< m/s, of the centre of mass at t = 0
+  double mass_kg = 0.0;                 ///< of the movable balls
+  std::vector<double> fall_m;           ///< per ball, how deep gravity can pull it from where it starts
+  Conserved start;
+  double energy_scale_J = 0.0;     ///< E_0, or where that is 0 the kinetic energy that gravity can give
+  double momentum_scale_Ns = 0.0;  ///< Σ m|v|, or where that is 0 the impulse that gravity gives
+  double angular_momentum_scale_Nms = 0.0;  ///< momentum scale × size of the scene
+
+  Conserved of(std::span<const BallState> balls) const;
+};
+
+}  // namespace carom

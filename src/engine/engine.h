@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/vec.h"
+#include "scenario/features.h"
+#include "scenario/scenario.h"
+
+namespace carom {
+
+// The one interface that every engine meets, the hand-written one included. A scene goes in, snapshots come
+// out. Quantities are SI in the scene's frame whatever units and axes the engine uses inside.
+
+/// The state of one ball at one moment.
+struct BallState {
+  Vec3 position;  ///< m
+  Vec3 velocity;  ///< m/s
+  Vec3 spin;      ///< rad/s
+};
+
+/// Running totals since t = 0, in the order of the simulation's own events.
+///
+/// Walls and immovable balls push on the movable ones, so momentum is conserved only once their push is
+/// accounted for: an engine adds up the impulses that it exchanged with them.
+struct Tally {
+  std::int64_t impacts = 0;                      ///< ball on ball and ball on wall, approaching ones only
+  Vec3 external_impulse = Vec3::Zero();          ///< N s, from walls and immovable balls onto movable balls
+  Vec3 external_angular_impulse = Vec3::Zero();  ///< N m s, Σ x_contact × J about the origin
+  bool external_known = true;                    ///< false where the engine cannot tell these impulses
+};
+
+using SettingValue = std::variant<bool, double, std::string>;
+/// Every setting an engine ran with, by name (units in the name: `velocity_threshold_mps`).
+using Settings = std::map<std::string, SettingValue>;
+
+/// One scene set up in one engine.
+class Simulation {
+ public:
+  Simulation() = default;
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+  virtual ~Simulation() = default;
+
+  /// Moves the world on by `steps` equal steps of `step_s` seconds. An engine without a step of its own jumps
+  /// to the end. @pre step_s > 0, steps > 0.
+  virtual void advance(double step_s, std::int64_t steps) = 0;
+
+  /// Writes the state of every ball, in the scene's order. @pre balls.size() == scenario.balls.size().
+  virtual void snapshot(std::span<BallState> balls) const = 0;
+
+  virtual Tally tally() const = 0;
+
+  /// Every setting in force, those of the profile as well as what was derived from the scene.
+  virtual Settings settings() const = 0;
+
+  /// A bound on the error of every position, metres, where the engine knows one (a closed form does).
+  virtual double uncertainty_m() const { return 0.0; }
+};
+
+/// A way of setting an engine up. "faithful" comes first: every threshold, damping, sleep and margin set for
+/// fidelity. "default" is what a newcomer gets.
+struct Profile {
+  std::string name;
+  std::string about;  ///< one sentence
+};
+
+/// What an engine is and can do, before any scene.
+struct EngineInfo {
+  std::string name;       ///< as in `--engine`
+  std::string about;      ///< one sentence
+  std::string version;    ///< of the engine
+  std::string precision;  ///< "float32" or "float64"
+  std::vector<Profile> profiles;
+  std::map<Feature, std::string> cannot;  ///< features it lacks, each with the reason; all others it has
+};
+
+class Engine {
+ public:
+  Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+  virtual ~Engine() = default;
+
+  virtual EngineInfo info() const = 0;
+
+  /// Why this scene is beyond this engine although every feature it needs is there; empty where it is not.
+  virtual std::string refuses(const Scenario& scenario, std::string_view profile) const {
+    (void)scenario;
+    (void)profile;
+    return {};
+  }
+
+  /// Sets the scene up. @pre unsupported_reason() is empty, and the profile is one of info().profiles.
+  /// The scenario outlives the simulation.
+  virtual std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const = 0;
+};
+
+/// Why the engine cannot run the scene: the first missing feature, or what the engine itself refuses; empty
+/// where it can.
+std::string unsupported_reason(const Engine& engine, const Scenario& scenario, std::string_view profile);
+
+/// The symbol by which a loadable engine module hands out its engine (see module.h).
+#define CAROM_ENGINE_SYMBOL carom_engine
+using EngineFactory = Engine* (*)();
+
+}  // namespace carom
+
+/// Defines the entry point of a loadable engine module.
+#define CAROM_ENGINE_MODULE(EngineType)                                                     \
+  extern "C" __attribute__((visibility("default"))) ::carom::Engine* CAROM_ENGINE_SYMBOL(); \
+  extern "C" ::carom::Engine* CAROM_ENGINE_SYMBOL() {                                       \
+    static EngineType engine;                                                               \
+    return &engine;                                                                         \
+  }

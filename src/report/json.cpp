@@ -1,0 +1,148 @@
+#include "report/json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+namespace carom {
+
+namespace {
+
+// Keys in the order in which people read them.
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(std::optional<double> value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json vector(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json divergence(const std::optional<Divergence>& first) {
+  if (!first) return nullptr;
+  return {{"time", first->time_s}, {"balls", first->balls}, {"metric", name_of(first->metric)}};
+}
+
+Json metrics(const RunComparison& result) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < kMetricNames.size(); ++i) {
+    const auto metric = static_cast<Metric>(i);
+    const std::optional<double> value = result.metrics[metric];
+    // A count is written as one.
+    json[kMetricNames[i]] =
+        metric == Metric::escaped && value ? Json(static_cast<std::int64_t>(*value)) : number_or_null(value);
+  }
+  return json;
+}
+
+Json gates(const RunComparison& result) {
+  Json json = Json::array();
+  for (const GateResult& gate : result.gates) {
+    json.push_back({{"metric", name_of(gate.metric)},
+                    {"limit", gate.limit},
+                    {"value", number_or_null(gate.value)},
+                    {"holds", gate.holds}});
+  }
+  return json;
+}
+
+Json final_states(const Scenario& scene, const Trajectory& trajectory, bool all_balls) {
+  Json json = Json::array();
+  const auto balls = trajectory.frame(trajectory.frames() - 1);
+  const std::size_t listed = all_balls ? balls.size() : std::min(balls.size(), kListedBalls);
+  for (std::size_t i = 0; i < listed; ++i) {
+    json.push_back({{"mass", number_or_null(scene.balls[i].mass)},
+                    {"radius", scene.balls[i].radius},
+                    {"position", vector(balls[i].position)},
+                    {"velocity", vector(balls[i].velocity)},
+                    {"spin", vector(balls[i].spin)}});
+  }
+  return json;
+}
+
+Json settings(const Settings& settings) {
+  Json json = Json::object();
+  for (const auto& [name, value] : settings) {
+    std::visit([&json, &key = name](const auto& v) { json[key] = v; }, value);
+  }
+  return json;
+}
+
+Json run_json(const Scenario& scene, const RunComparison& result, bool all_balls) {
+  const Run& run = result.run;
+  const bool ok = run.status == RunStatus::ok;
+  return {
+      {"engine", run.engine},
+      {"profile", run.profile},
+      {"version", run.version},
+      {"precision", run.precision},
+      {"settings", settings(run.settings)},
+      {"status", name_of(run.status)},
+      {"reason", run.reason},
+      {"cpu_seconds", ok ? Json(run.cpu_seconds) : Json(nullptr)},
+      {"steps", ok ? Json(run.steps) : Json(nullptr)},
+      {"collisions", ok ? Json(run.trajectory.tally(run.trajectory.frames() - 1).impacts) : Json(nullptr)},
+      {"under_test", result.under_test},
+      {"metrics", metrics(result)},
+      {"first_divergence", divergence(result.first_divergence)},
+      {"gates", gates(result)},
+      {"verdict", name_of(result.verdict)},
+      {"final", ok ? final_states(scene, run.trajectory, all_balls) : Json::array()}};
+}
+
+Json pair_json(const SceneComparison& scene, const PairComparison& pair) {
+  return {{"a", scene.runs[pair.a].run.label()},
+          {"b", scene.runs[pair.b].run.label()},
+          {"position", pair.position_m},
+          {"position_rms", pair.position_rms_m},
+          {"energy", number_or_null(pair.energy)},
+          {"momentum", number_or_null(pair.momentum)},
+          {"first_divergence", divergence(pair.first_divergence)}};
+}
+
+Json scene_json(const SceneComparison& comparison, bool all_balls) {
+  const Scenario& scene = *comparison.scene;
+  Json json = {{"id", scene.id},
+               {"title", scene.title},
+               {"sha256", scene.sha256},
+               {"dimension", scene.dimension},
+               {"duration", scene.duration_s},
+               {"step", scene.step_s},
+               {"frames", scene.frames},
+               {"balls", scene.balls.size()},
+               {"effects", Json::array()},
+               {"notes", scene.notes}};
+  for (const Feature feature : required_features(scene)) json["effects"].push_back(name_of(feature));
+  json["truth"] = {
+      {"kind", comparison.truth.kind},
+      {"reason", comparison.truth.reason},
+      {"uncertainty", comparison.truth.known() ? Json(comparison.truth.uncertainty_m) : Json(nullptr)},
+      {"horizon", number_or_null(comparison.truth.horizon_s)}};
+  json["runs"] = Json::array();
+  for (const RunComparison& run : comparison.runs) json["runs"].push_back(run_json(scene, run, all_balls));
+  json["pairs"] = Json::array();
+  for (const PairComparison& pair : comparison.pairs) json["pairs"].push_back(pair_json(comparison, pair));
+  return json;
+}
+
+}  // namespace
+
+std::string results_json(const Results& results, bool all_balls) {
+  Json json = {{"carom", results.version},
+               {"machine",
+                {{"cpu", results.machine.cpu},
+                 {"cores", results.machine.cores},
+                 {"compiler", results.machine.compiler},
+                 {"build", results.machine.build}}},
+               {"not_built", Json::array()},
+               {"scenes", Json::array()}};
+  for (const MissingEngine& engine : results.missing) {
+    json["not_built"].push_back({{"engine", engine.name}, {"package", engine.package}});
+  }
+  for (const SceneComparison& scene : results.scenes) json["scenes"].push_back(scene_json(scene, all_balls));
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace carom

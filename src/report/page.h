@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "comparison/results.h"
+
+namespace carom {
+
+/// The report as one HTML file that needs nothing else: styles, script and plots are inside.
+/// @param web  the folder with the page's style sheet and script (reports/web)
+/// @throws InputError where the web sources cannot be read.
+std::string render_page(const Results& results, const std::filesystem::path& web);
+
+}  // namespace carom

@@ -1,0 +1,51 @@
+#include "report/page.h"
+
+#include "core/files.h"
+#include "report/page/chapters.h"
+#include "report/page/html.h"
+#include "report/page/overview.h"
+#include "report/page/scene_section.h"
+#include "report/page/style.h"
+
+namespace carom {
+
+namespace {
+
+using namespace page;
+
+/// Style and script stand before the body and are not part of its tree: their text must not be escaped.
+std::string head(const std::filesystem::path& web) {
+  return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+         "<title>Carom report</title>\n<style>\n" +
+         read_file(web / "page.css") + "</style>\n<script>\n" + read_file(web / "page.js") +
+         "</script>\n</head>\n";
+}
+
+void add_navigation(Node body) {
+  add(body, "a", {{"class", "skip"}, {"href", "#overview"}}, "Skip to the results");
+  Node bar = add(body, "nav", {{"aria-label", "Parts of this page"}});
+  for (const auto& [anchor, name] : {std::pair{"#overview", "All scenes"},
+                                     {"#guide", "How to read this page"},
+                                     {"#engines", "The engines"}}) {
+    add(bar, "a", {{"href", anchor}}, name);
+  }
+}
+
+}  // namespace
+
+std::string render_page(const Results& results, const std::filesystem::path& web) {
+  const Legend legend(results.scenes);
+  pugi::xml_document document;
+  Node body = document.append_child("body");
+  add_navigation(body);
+  Node main = add(body, "main");
+  add_overview(main, results, legend);
+  for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
+  add_guide(main, read_file(web / "guide.md"));
+  add_engines(main, results);
+  add_footer(body, results);
+  return head(web) + markup(body) + "\n</html>\n";
+}
+
+}  // namespace carom

@@ -1,0 +1,71 @@
+#include "report/table.h"
+
+#include <fmt/color.h>
+#include <fmt/format.h>
+
+#include "report/words.h"
+
+namespace carom {
+
+namespace {
+
+fmt::text_style style_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return fg(fmt::terminal_color::green);
+    case Verdict::fail:
+    case Verdict::error:
+      return fg(fmt::terminal_color::red) | fmt::emphasis::bold;
+    case Verdict::unsupported:
+      return fg(fmt::terminal_color::bright_black);
+    case Verdict::shown:
+      break;
+  }
+  return {};
+}
+
+std::string verdict_word(Verdict verdict, bool color) {
+  const std::string word = fmt::format("{:<11}", name_of(verdict));
+  return color && verdict != Verdict::shown ? fmt::format(style_of(verdict), "{}", word) : word;
+}
+
+std::string truth_words(const SceneComparison& scene) {
+  if (!scene.truth.known()) return "no truth: " + scene.truth.reason;
+  return fmt::format("truth: {}, known to {:.1g} m", scene.truth.kind, scene.truth.uncertainty_m);
+}
+
+std::string run_row(const RunComparison& result, bool color) {
+  const std::string name =
+      fmt::format("  {:<18} {} ", result.run.label(), verdict_word(result.verdict, color));
+  if (result.run.status != RunStatus::ok) return name + result.run.reason + "\n";
+  const auto cell = [&](Metric metric) { return short_number(result.metrics[metric]); };
+  return name + fmt::format("{:>9} {:>9} {:>9} {:>9} {:>7}\n", cell(Metric::position), cell(Metric::energy),
+                            cell(Metric::momentum), cell(Metric::penetration),
+                            short_number(result.run.cpu_seconds * 1e3));
+}
+
+}  // namespace
+
+std::string results_table(const Results& results, bool color) {
+  std::string text;
+  for (const SceneComparison& scene : results.scenes) {
+    text += fmt::format("{}: {}\n", scene.scene->id, scene.scene->title);
+    text += fmt::format("  {}\n", truth_words(scene));
+    for (const std::string& note : scene.scene->notes) text += fmt::format("  note: {}\n", note);
+    text += fmt::format("  {:<18} {:<11} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "engine", "verdict", "position",
+                        "energy", "momentum", "overlap", "CPU");
+    text += fmt::format("  {:<18} {:<11} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "", "", "m", "relative",
+                        "relative", "/ radius", "ms");
+    for (const RunComparison& run : scene.runs) text += run_row(run, color);
+    text += "\n";
+  }
+  for (const MissingEngine& engine : results.missing) {
+    text += fmt::format("{} is not built: {} is not installed\n", engine.name, engine.package);
+  }
+  const std::vector<std::string> broken = violations(results);
+  for (const std::string& line : broken) text += fmt::format("violated: {}\n", line);
+  if (broken.empty()) text += "Every gate holds.\n";
+  return text;
+}
+
+}  // namespace carom

@@ -1,0 +1,221 @@
+#include "scenario/generate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/random.h"
+#include "scenario/place.h"
+
+namespace carom {
+
+namespace {
+
+/// A stated packing and stated radii agree when they do to this relative amount: box sides and radii are
+/// written with two or three digits.
+constexpr double kPackingAgrees = 0.01;
+
+double volume(double radius, int dimension) {
+  if (dimension == 2) return std::numbers::pi * radius * radius;
+  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
+
+/// x^(1/dimension) by correctly rounded operations only (std::cbrt may round differently elsewhere).
+/// Newton's iteration for y³ = x, y ← (2y + x/y²)/3, started above the root and run until it stops falling.
+double root(double x, int dimension) {
+  if (dimension == 2) return std::sqrt(x);
+  double y = std::max(1.0, x);
+  while (true) {
+    const double next = (2.0 * y + x / (y * y)) / 3.0;
+    if (!(next < y)) return y;
+    y = next;
+  }
+}
+
+double box_volume(const Scenario& scene) {
+  double product = 1.0;
+  for (int axis = 0; axis < scene.dimension; ++axis) product *= scene.box->max[axis] - scene.box->min[axis];
+  return product;
+}
+
+std::vector<double> draw_radii(const Generator& g, Scenario& scene, Random& random) {
+  const auto [low, high] = g.radius.value_or(std::pair(1.0, 1.0));
+  std::vector<double> radii(g.count);
+  for (double& radius : radii) radius = low < high ? random.uniform(low, high) : low;
+  if (!g.packing) return radii;
+
+  double total = 0.0;
+  for (const double radius : radii) total += volume(radius, scene.dimension);
+  const double drawn = total / box_volume(scene);
+  if (g.radius && std::abs(drawn - *g.packing) <= kPackingAgrees * *g.packing) return radii;
+  const double scale = root(*g.packing / drawn, scene.dimension);
+  for (double& radius : radii) radius *= scale;
+  if (g.radius) {
+    scene.notes.push_back(fmt::format(
+        "balls: radius and count fill {:.4g} of the box; every radius was multiplied by {:.6g} so "
+        "that packing is {}",
+        drawn, scale, *g.packing));
+  }
+  return radii;
+}
+
+std::vector<Ball> with_masses(const Generator& g, const Scenario& scene, const std::vector<double>& radii) {
+  std::vector<Ball> balls(radii.size());
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    balls[i].radius = radii[i];
+    balls[i].mass = g.density ? *g.density * volume(radii[i], scene.dimension) : g.mass.value_or(1.0);
+    balls[i].inertia = g.inertia;
+  }
+  return balls;
+}
+
+/// Maxwell's distribution: each component normal with variance T/m, the total momentum then taken out, and
+/// the whole scaled so that the root of the mean square speed is the one asked for.
+void give_speeds(const Generator& g, int dimension, Random& random, std::vector<Ball>& balls) {
+  if (g.speed > 0.0) {
+    Vec3 momentum = Vec3::Zero();
+    double mass = 0.0;
+    for (Ball& ball : balls) {
+      for (int axis = 0; axis < dimension; ++axis)
+        ball.velocity[axis] = random.normal() / std::sqrt(ball.mass);
+      momentum += ball.mass * ball.velocity;
+      mass += ball.mass;
+    }
+    double square = 0.0;
+    for (Ball& ball : balls) {
+      ball.velocity -= momentum / mass;
+      square += ball.velocity.squaredNorm();
+    }
+    const double scale = g.speed / std::sqrt(square / static_cast<double>(balls.size()));
+    for (Ball& ball : balls) ball.velocity *= scale;
+  }
+  if (g.velocity) {
+    for (Ball& ball : balls) ball.velocity += *g.velocity;
+  }
+}
+
+/// A row of balls, equal gaps between surfaces; with a box and no gap they are spread over it evenly.
+void place_line(const Generator& g, const Scenario& scene, std::vector<Ball>& balls) {
+  const Vec3 direction = g.direction.value_or(Vec3::UnitX()).normalized();
+  double diameters = 0.0;
+  for (const Ball& ball : balls) diameters += 2.0 * ball.radius;
+
+  double gap = g.gap.value_or(2.0 * balls.front().radius);
+  Vec3 first = g.position.value_or(Vec3::Zero());
+  if (scene.box && !g.position) {
+    const Vec3 extent = scene.box->max - scene.box->min;
+    const double length = extent.dot(direction.cwiseAbs());
+    if (!g.gap) gap = (length - diameters) / static_cast<double>(balls.size() + 1);
+    const double occupied = diameters + gap * static_cast<double>(balls.size() - 1);
+    first = 0.5 * (scene.box->min + scene.box->max) + (balls.front().radius - 0.5 * occupied) * direction;
+  }
+  if (gap < 0.0) throw DoesNotFit(fmt::format("a line of {} balls is longer than the box", balls.size()));
+
+  double along = 0.0;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    if (i > 0) along += balls[i - 1].radius + gap + balls[i].radius;
+    balls[i].position = first + along * direction;
+  }
+}
+
+/// How many balls along each axis: the smallest cubic block that holds them, or as many as the box takes.
+Eigen::Vector3i lattice_shape(const Generator& g, const Scenario& scene, double pitch) {
+  Eigen::Vector3i shape(1, 1, 1);
+  if (scene.box) {
+    for (int axis = 0; axis < scene.dimension; ++axis) {
+      const double extent = scene.box->max[axis] - scene.box->min[axis];
+      shape[axis] = static_cast<int>(std::clamp(std::floor(extent / pitch), 0.0, 1e6));
+    }
+    return shape;
+  }
+  while (static_cast<double>(shape[0]) * shape[1] * shape[2] < static_cast<double>(g.count)) {
+    for (int axis = 0; axis < scene.dimension; ++axis) ++shape[axis];
+  }
+  return shape;
+}
+
+/// The widest pitch at which the box still takes all the balls; each ball has a cell of one pitch for itself.
+double widest_pitch(const Generator& g, const Scenario& scene, double least) {
+  double low = least;
+  double high = (scene.box->max - scene.box->min).maxCoeff();
+  const auto fits = [&](double pitch) {
+    const Eigen::Vector3d shape = lattice_shape(g, scene, pitch).cast<double>();
+    return shape.prod() >= static_cast<double>(g.count);
+  };
+  // Bisection down to neighbouring doubles takes fewer halvings than a double has bits.
+  for (int halving = 0; halving < 64 && low < high; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (fits(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// A square or cubic lattice, x fastest; with a box and no gap as wide as the box allows.
+void place_lattice(const Generator& g, const Scenario& scene, std::vector<Ball>& balls) {
+  double largest = 0.0;
+  for (const Ball& ball : balls) largest = std::max(largest, ball.radius);
+  double pitch = 2.0 * largest + g.gap.value_or(scene.box ? 0.0 : 2.0 * largest);
+  const Eigen::Vector3d tightest = lattice_shape(g, scene, pitch).cast<double>();
+  if (tightest.prod() < static_cast<double>(balls.size())) {
+    throw DoesNotFit(
+        fmt::format("the box holds {} balls on a lattice, not {}", tightest.prod(), balls.size()));
+  }
+  if (scene.box && !g.gap) pitch = widest_pitch(g, scene, pitch);
+
+  const Eigen::Vector3i shape = lattice_shape(g, scene, pitch);
+  const Vec3 corner = scene.box ? Vec3(scene.box->min) : Vec3(Vec3::Zero());
+  Vec3 first = Vec3::Zero();
+  for (int axis = 0; axis < scene.dimension; ++axis) first[axis] = corner[axis] + 0.5 * pitch;
+  if (g.position) first = *g.position;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const int site = static_cast<int>(i);
+    const Eigen::Vector3i cell(site % shape[0], site / shape[0] % shape[1], site / shape[0] / shape[1]);
+    balls[i].position = first + pitch * cell.cast<double>();
+  }
+}
+
+/// Lines and lattices stand where they are told to, so they are checked; a gas is placed free of overlap.
+void check_inside(const Scenario& scene, const std::vector<Ball>& balls) {
+  for (const Ball& ball : balls) {
+    for (const Wall& wall : scene.walls) {
+      const double gap = wall.normal.dot(ball.position) - wall.offset - ball.radius;
+      // A ball that is meant to touch a wall may reach behind it by the rounding of its coordinates.
+      const double rounding = 8.0 * std::numeric_limits<double>::epsilon() *
+                              (ball.position.cwiseAbs().sum() + std::abs(wall.offset) + ball.radius);
+      if (gap < -rounding) {
+        throw DoesNotFit(fmt::format("a ball at ({:.6g}, {:.6g}, {:.6g}) reaches {:.3g} m behind a wall",
+                                     ball.position.x(), ball.position.y(), ball.position.z(), -gap));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Ball> generate(const Generator& g, Scenario& scene) {
+  Random random(g.seed);
+  std::vector<Ball> balls = with_masses(g, scene, draw_radii(g, scene, random));
+  switch (g.kind) {
+    case Generator::Kind::gas: {
+      std::vector<double> radii(balls.size());
+      std::transform(balls.begin(), balls.end(), radii.begin(), [](const Ball& ball) { return ball.radius; });
+      const std::vector<Vec3> positions = place_at_random(radii, scene, random);
+      for (std::size_t i = 0; i < balls.size(); ++i) balls[i].position = positions[i];
+      break;
+    }
+    case Generator::Kind::line:
+      place_line(g, scene, balls);
+      break;
+    case Generator::Kind::lattice:
+      place_lattice(g, scene, balls);
+      break;
+  }
+  if (g.kind != Generator::Kind::gas) check_inside(scene, balls);
+  give_speeds(g, scene.dimension, random, balls);
+  return balls;
+}
+
+}  // namespace carom

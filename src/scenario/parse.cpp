@@ -1,0 +1,295 @@
+#include "scenario/parse.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sha256.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "scenario/generate.h"
+#include "scenario/read.h"
+
+namespace carom {
+
+namespace {
+
+/// More balls or frames than this are a typing error rather than a scene.
+constexpr std::int64_t kMostBalls = 100'000'000;
+constexpr std::int64_t kMostFrames = 10'000'000;
+constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+
+std::string sha256_hex(std::string_view bytes) {
+  std::array<char, SHA256_DIGEST_STRING_LENGTH> hex{};
+  SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), hex.data());
+  return hex.data();
+}
+
+Effects read_effects(Reader reader, int dimension) {
+  Effects effects;
+  effects.gravity = reader.vector("gravity", dimension);
+  if (auto drag = reader.table("drag")) {
+    const auto linear = drag->number("linear", kNotNegative);
+    const auto quadratic = drag->number("quadratic", kNotNegative);
+    if (linear.has_value() == quadratic.has_value()) {
+      reader.fail("drag", "needs either linear or quadratic, exactly one of the two");
+    }
+    effects.drag = linear ? Drag{Drag::Kind::linear, *linear} : Drag{Drag::Kind::quadratic, *quadratic};
+    drag->finish();
+  }
+  effects.spin = reader.boolean("spin").value_or(false);
+  effects.magnus = reader.number("magnus", kFinite);
+  effects.collisions = reader.boolean("collisions").value_or(true);
+  if (effects.magnus && !effects.spin) reader.fail("magnus", "needs effects.spin = true");
+  reader.finish();
+  return effects;
+}
+
+Contact read_contact_keys(Reader& reader, Contact contact, bool spin) {
+  contact.restitution = reader.number_or("restitution", kUnitInterval, contact.restitution);
+  contact.friction = reader.number_or("friction", kNotNegative, contact.friction);
+  contact.tangential_restitution =
+      reader.number_or("tangential_restitution", kMinusOneToOne, contact.tangential_restitution);
+  if (contact.friction > 0.0 && !spin) reader.fail("friction", "above 0 it needs effects.spin = true");
+  return contact;
+}
+
+void read_contacts(Reader& root, Scenario& scene) {
+  if (auto reader = root.table("contact")) {
+    scene.ball_contact = read_contact_keys(*reader, {}, scene.effects.spin);
+    scene.wall_contact = scene.ball_contact;
+    if (auto wall = reader->table("wall")) {
+      scene.wall_contact = read_contact_keys(*wall, scene.ball_contact, scene.effects.spin);
+      wall->finish();
+    }
+    reader->finish();
+  }
+}
+
+Box read_box(Reader reader, int dimension) {
+  Box box;
+  box.min = reader.required("min", reader.vector("min", dimension));
+  box.max = reader.required("max", reader.vector("max", dimension));
+  for (int axis = 0; axis < dimension; ++axis) {
+    if (box.min[axis] >= box.max[axis]) reader.fail("max", "every coordinate must be above that of min");
+  }
+  reader.finish();
+  return box;
+}
+
+std::vector<Wall> walls_of(const Box& box, int dimension) {
+  std::vector<Wall> walls;
+  for (int axis = 0; axis < dimension; ++axis) {
+    walls.push_back({Vec3::Unit(axis), box.min[axis]});
+    walls.push_back({-Vec3::Unit(axis), -box.max[axis]});
+  }
+  return walls;
+}
+
+/// The keys that walls, slabs and barriers share. A normal of any length is made a unit vector, and the
+/// offset goes with it: normal·x >= offset says the same after both are divided by the normal's length.
+template <class Plane>
+Plane read_plane(Reader& reader, int dimension) {
+  Plane plane;
+  const Vec3 normal = reader.required("normal", reader.vector("normal", dimension));
+  if (normal.norm() == 0.0) reader.fail("normal", "found the zero vector, allowed: a direction");
+  plane.offset = reader.required("offset", reader.number("offset", kFinite)) / normal.norm();
+  plane.normal = normal.normalized();
+  return plane;
+}
+
+void read_solids(Reader& root, Scenario& scene) {
+  if (auto reader = root.table("box")) {
+    scene.box = read_box(*reader, scene.dimension);
+    scene.walls = walls_of(*scene.box, scene.dimension);
+  }
+  for (Reader& reader : root.tables("wall")) {
+    scene.walls.push_back(read_plane<Wall>(reader, scene.dimension));
+    reader.finish();
+  }
+  for (Reader& reader : root.tables("slab")) {
+    Slab slab = read_plane<Slab>(reader, scene.dimension);
+    slab.thickness = reader.required("thickness", reader.number("thickness", kPositive));
+    scene.slabs.push_back(slab);
+    reader.finish();
+  }
+  for (Reader& reader : root.tables("barrier")) {
+    Barrier barrier = read_plane<Barrier>(reader, scene.dimension);
+    barrier.thickness = reader.required("thickness", reader.number("thickness", kPositive));
+    barrier.height = reader.required("height", reader.number("height", kNotNegative));
+    barrier.hbar = reader.required("hbar", reader.number("hbar", kPositive));
+    barrier.seed = static_cast<std::uint64_t>(reader.integer("seed", 0, kLargestSeed).value_or(0));
+    scene.barriers.push_back(barrier);
+    reader.finish();
+  }
+}
+
+Ball read_ball(Reader& reader, const Scenario& scene) {
+  Ball ball;
+  ball.mass = reader.required("mass", reader.number("mass", kPositiveOrInfinite));
+  ball.radius = reader.required("radius", reader.number("radius", kPositive));
+  ball.position = reader.required("position", reader.vector("position", scene.dimension));
+  ball.velocity = reader.vector("velocity", scene.dimension).value_or(Vec3::Zero());
+  ball.spin = reader.spin("spin", scene.dimension).value_or(Vec3::Zero());
+  ball.inertia = reader.number_or("inertia", kPositiveToOne, ball.inertia);
+  if (!ball.spin.isZero(0.0) && !scene.effects.spin) reader.fail("spin", "needs effects.spin = true");
+  reader.finish();
+  return ball;
+}
+
+Generator read_generator(Reader& reader, const Scenario& scene, const SceneOptions& options) {
+  using Kind = Generator::Kind;
+  Generator g;
+  const std::vector<std::string_view> kinds = {"gas", "lattice", "line"};
+  g.kind = static_cast<Kind>(reader.required("kind", reader.word("kind", kinds)));
+  g.count = static_cast<std::size_t>(reader.required("count", reader.integer("count", 1, kMostBalls)));
+  g.seed = static_cast<std::uint64_t>(reader.integer("seed", 0, kLargestSeed).value_or(0));
+  if (options.seed) g.seed = *options.seed;
+  g.radius = reader.number_or_range("radius", kPositive);
+  g.mass = reader.number("mass", kPositive);
+  g.density = reader.number("density", kPositive);
+  g.inertia = reader.number_or("inertia", kPositiveToOne, g.inertia);
+  g.speed = reader.number_or("speed", kNotNegative, 0.0);
+  g.velocity = reader.vector("velocity", scene.dimension);
+  if (g.kind == Kind::gas) {
+    g.packing = reader.number("packing", kOpenUnitInterval);
+    if (!scene.box) reader.fail("kind", "a gas needs [box]");
+  } else {
+    g.position = reader.vector("position", scene.dimension);
+    g.gap = reader.number("gap", kNotNegative);
+  }
+  if (g.kind == Kind::line) {
+    g.direction = reader.vector("direction", scene.dimension);
+    if (g.direction && g.direction->norm() == 0.0) {
+      reader.fail("direction", "found the zero vector, allowed: a direction");
+    }
+  }
+  if (!g.radius && !g.packing) reader.fail("radius", "is missing");
+  if (g.mass && g.density) reader.fail("density", "mass is given too, allowed: one of the two");
+  if (g.speed > 0.0 && g.count < 2) reader.fail("speed", "a single ball with total momentum zero is at rest");
+  reader.finish();
+  return g;
+}
+
+void read_balls(Reader& root, Scenario& scene, const SceneOptions& options) {
+  for (Reader& reader : root.tables("ball")) scene.balls.push_back(read_ball(reader, scene));
+  for (Reader& reader : root.tables("balls")) {
+    const Generator generator = read_generator(reader, scene, options);
+    try {
+      const std::vector<Ball> made = generate(generator, scene);
+      scene.balls.insert(scene.balls.end(), made.begin(), made.end());
+    } catch (const DoesNotFit& error) {
+      reader.fail("count", fmt::format("{}, allowed: fewer or smaller balls, or a larger box", error.what()));
+    }
+  }
+  if (scene.balls.empty()) root.fail("", "no ball: a scene needs a [[ball]] or [[balls]] table");
+}
+
+Event read_event(Reader& reader, const Scenario& scene) {
+  Event event;
+  const Range within{0.0, scene.duration_s, false, false, "a time within the duration"};
+  event.time = reader.required("time", reader.number("time", within));
+  const auto last = static_cast<std::int64_t>(scene.balls.size()) - 1;
+  const auto ball = reader.integer("ball", 0, last);
+  if (const auto factor = reader.number("scale_mass", kPositive)) event.actions.push_back(ScaleMass{*factor});
+  if (const auto factor = reader.number("scale_radius", kPositive)) {
+    event.actions.push_back(ScaleRadius{*factor});
+  }
+  if (const auto v = reader.vector("set_velocity", scene.dimension)) event.actions.push_back(SetVelocity{*v});
+  if (const auto x = reader.vector("set_position", scene.dimension)) event.actions.push_back(SetPosition{*x});
+  if (reader.boolean("remove").value_or(false)) event.actions.push_back(RemoveBall{});
+  const bool about_a_ball = !event.actions.empty();
+  if (auto added = reader.table("add_ball")) event.actions.push_back(AddBall{read_ball(*added, scene)});
+  if (event.actions.empty()) {
+    reader.fail("",
+                "nothing happens, allowed: scale_mass, scale_radius, set_velocity, set_position, add_ball, "
+                "remove");
+  }
+  if (about_a_ball) event.ball = static_cast<std::size_t>(reader.required("ball", ball));
+  reader.finish();
+  return event;
+}
+
+Limits read_limits(Reader& reader) {
+  Limits limits;
+  for (std::size_t metric = 0; metric < kMetricNames.size(); ++metric) {
+    const auto limit = reader.number(kMetricNames[metric], kNotNegative);
+    if (limit) limits.emplace(static_cast<Metric>(metric), *limit);
+  }
+  return limits;
+}
+
+Gate read_gate(Reader reader, const std::vector<std::string>& engines) {
+  Gate gate;
+  gate.under_test = read_limits(reader);
+  for (auto& [engine, table] : reader.remaining_tables()) {
+    if (!engines.empty() && std::find(engines.begin(), engines.end(), engine) == engines.end()) {
+      reader.fail(engine, fmt::format("unknown engine or metric, allowed engines: {}; allowed metrics: {}",
+                                      fmt::join(engines, ", "), fmt::join(kMetricNames, ", ")));
+    }
+    gate.per_engine[engine] = read_limits(table);
+    table.finish();
+  }
+  reader.finish();
+  return gate;
+}
+
+TruthKind read_truth(Reader reader) {
+  const std::vector<std::string_view> kinds = {"auto", "closed-form", "exact", "converged", "none"};
+  const auto kind = static_cast<TruthKind>(reader.word("kind", kinds).value_or(0));
+  reader.finish();
+  return kind;
+}
+
+/// Keys are read in this order because later ones lean on earlier ones: vectors on the dimension, friction on
+/// spin, generated balls on the box.
+void read_scene(Reader& root, const SceneOptions& options, Scenario& scene) {
+  scene.title = root.required("title", root.text("title"));
+  scene.about = root.text("about").value_or("");
+  scene.dimension = static_cast<int>(root.required("dimension", root.integer("dimension", 2, 3)));
+  scene.duration_s = root.required("duration", root.number("duration", kPositive));
+  scene.step_s = root.required("step", root.number("step", kPositive));
+  if (options.step_s) scene.step_s = *options.step_s;
+  scene.frames = root.required("frames", root.integer("frames", 1, kMostFrames));
+  if (auto effects = root.table("effects")) scene.effects = read_effects(*effects, scene.dimension);
+  read_contacts(root, scene);
+  read_solids(root, scene);
+  read_balls(root, scene, options);
+  for (Reader& reader : root.tables("event")) scene.events.push_back(read_event(reader, scene));
+  if (auto truth = root.table("truth")) scene.truth = read_truth(*truth);
+  if (auto gate = root.table("gate")) scene.gate = read_gate(*gate, options.engines);
+  root.finish();
+}
+
+}  // namespace
+
+ScenarioPtr parse_scene(std::string_view toml_text, const std::string& file, const SceneOptions& options) {
+  auto scene = std::make_shared<Scenario>();
+  scene->file = file;
+  scene->sha256 = sha256_hex(toml_text);
+  try {
+    const toml::table table = toml::parse(toml_text, file);
+    Reader root(table, file, "");
+    read_scene(root, options, *scene);
+  } catch (const toml::parse_error& error) {
+    const auto& place = error.source().begin;
+    throw InputError(
+        fmt::format("{}:{}:{}: not TOML: {}", file, place.line, place.column, error.description()));
+  }
+  std::stable_sort(scene->events.begin(), scene->events.end(),
+                   [](const Event& a, const Event& b) { return a.time < b.time; });
+  return scene;
+}
+
+ScenarioPtr load_scene(const std::filesystem::path& file, const SceneOptions& options) {
+  const ScenarioPtr parsed = parse_scene(read_file(file), file.string(), options);
+  auto scene = std::make_shared<Scenario>(*parsed);
+  const std::filesystem::path absolute = std::filesystem::absolute(file);
+  scene->id = fmt::format("{}/{}", absolute.parent_path().filename().string(), absolute.stem().string());
+  return scene;
+}
+
+}  // namespace carom

@@ -1,0 +1,225 @@
+#include "scenario/place.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "scenario/generate.h"
+
+namespace carom {
+
+namespace {
+
+/// Room left between surfaces, relative to the radius: far above round-off (1e-16), so that no engine, in
+/// single precision on its own scale or not, finds two balls touching that were meant to be apart, far below
+/// anything that is seen.
+constexpr double kClearance = 1e-9;
+
+/// How far a ball is moved in one trial at most, in its radii: the gaps of a dense fluid are of this size.
+constexpr double kStride = 0.5;
+
+/// Sweeps without a single further ball at its full size after which the placement gives up. In a fluid some
+/// ball arrives nearly every sweep.
+constexpr int kPatience = 400;
+
+/// Only balls near one that still grows are moved in most sweeps; a dense corner is relieved from further
+/// away.
+constexpr int kStirAll = 4;
+
+/// Balls in square cells of the box, as linked lists, so that a moved ball changes its cell in O(1).
+class Cells {
+ public:
+  Cells(const Box& box, int dimension, double width, std::size_t balls)
+      : origin_(box.min), next_(balls, kEnd) {
+    for (int axis = 0; axis < dimension; ++axis) {
+      const double extent = box.max[axis] - box.min[axis];
+      // Cells no narrower than asked, and not many more of them than balls.
+      const double most = dimension == 2 ? 1024.0 : 128.0;
+      counts_[static_cast<std::size_t>(axis)] =
+          static_cast<std::int64_t>(std::clamp(std::floor(extent / width), 1.0, most));
+      inverse_width_[axis] = static_cast<double>(counts_[static_cast<std::size_t>(axis)]) / extent;
+    }
+    heads_.assign(static_cast<std::size_t>(counts_[0] * counts_[1] * counts_[2]), kEnd);
+  }
+
+  void insert(std::size_t ball, const Vec3& at) {
+    std::size_t& head = heads_[index(cell(at))];
+    next_[ball] = head;
+    head = ball;
+  }
+
+  void remove(std::size_t ball, const Vec3& at) {
+    std::size_t* link = &heads_[index(cell(at))];
+    while (*link != ball) link = &next_[*link];
+    *link = next_[ball];
+  }
+
+  /// Calls visit(ball) for every ball in the cell of `at` and the cells around it.
+  template <class Visit>
+  void around(const Vec3& at, Visit&& visit) const {
+    const Cell centre = cell(at);
+    Cell low;
+    Cell high;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::max<std::int64_t>(centre[axis] - 1, 0);
+      high[axis] = std::min(centre[axis] + 1, counts_[axis] - 1);
+    }
+    for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+          for (std::size_t ball = heads_[index({x, y, z})]; ball != kEnd; ball = next_[ball]) visit(ball);
+        }
+      }
+    }
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  static constexpr std::size_t kEnd = static_cast<std::size_t>(-1);
+
+  Cell cell(const Vec3& at) const {
+    Cell cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = std::floor((at[axis] - origin_[axis]) * inverse_width_[axis]);
+      const auto last = static_cast<double>(counts_[static_cast<std::size_t>(axis)] - 1);
+      cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(place, 0.0, last));
+    }
+    return cell;
+  }
+
+  std::size_t index(const Cell& cell) const {
+    return static_cast<std::size_t>((cell[2] * counts_[1] + cell[1]) * counts_[0] + cell[0]);
+  }
+
+  Vec3 origin_;
+  Vec3 inverse_width_ = Vec3::Zero();
+  std::array<std::int64_t, 3> counts_{1, 1, 1};
+  std::vector<std::size_t> heads_;
+  std::vector<std::size_t> next_;
+};
+
+double largest_radius(const std::vector<double>& radii, const Scenario& scene) {
+  double largest = radii.empty() ? 0.0 : *std::max_element(radii.begin(), radii.end());
+  for (const Ball& ball : scene.balls) largest = std::max(largest, ball.radius);
+  return largest;
+}
+
+class Placement {
+ public:
+  Placement(const std::vector<double>& radii, const Scenario& scene, Random& random)
+      : scene_(scene),
+        random_(random),
+        count_(radii.size()),
+        full_(radii),
+        cells_(*scene.box, scene.dimension, 2.0 * (1.0 + kClearance) * largest_radius(radii, scene),
+               radii.size() + scene.balls.size()) {
+    for (double& radius : full_) radius *= 1.0 + kClearance;
+    size_.assign(count_, 0.0);
+    for (std::size_t i = 0; i < count_; ++i) position_.push_back(anywhere());
+    for (const Ball& ball : scene.balls) {
+      position_.push_back(ball.position);
+      size_.push_back(ball.radius);
+    }
+    for (std::size_t i = 0; i < position_.size(); ++i) cells_.insert(i, position_[i]);
+    stirred_.assign(position_.size(), 0);
+  }
+
+  std::vector<Vec3> run() {
+    std::size_t grown = 0;
+    for (int waited = 0; grown < count_; ++waited) {
+      if (waited > kPatience) {
+        throw DoesNotFit(
+            fmt::format("{} of {} balls fit into the box with the rest, and no more do", grown, count_));
+      }
+      const std::size_t now = sweep();
+      if (now > grown) waited = 0;
+      grown = now;
+    }
+    position_.resize(count_);
+    return std::move(position_);
+  }
+
+ private:
+  /// Two trials for every ball that is not grown, one near by and one anywhere in the box; one near by for
+  /// those around it, so that room opens, and in every kStirAll-th sweep for all. Returns how many balls are
+  /// grown.
+  std::size_t sweep() {
+    std::size_t grown = 0;
+    ++sweeps_;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const bool growing = size_[i] < full_[i];
+      if (growing || stirred_[i] == sweeps_ || sweeps_ % kStirAll == 0)
+        try_at(i, position_[i] + nudge(kStride * full_[i]));
+      if (growing) try_at(i, anywhere());
+      if (growing) try_at(i, position_[i]);
+      if (size_[i] < full_[i]) {
+        cells_.around(position_[i], [this](std::size_t near) { stirred_[near] = sweeps_ + 1; });
+      } else {
+        ++grown;
+      }
+    }
+    return grown;
+  }
+
+  void try_at(std::size_t ball, const Vec3& at) {
+    const double room = room_at(at, ball);
+    if (room < size_[ball] || room <= 0.0) return;
+    cells_.remove(ball, position_[ball]);
+    position_[ball] = at;
+    cells_.insert(ball, at);
+    size_[ball] = std::min(room, full_[ball]);
+  }
+
+  /// The largest radius, up to about the ball's full one, that a ball at this place may have.
+  double room_at(const Vec3& at, std::size_t ball) const {
+    double room = full_[ball];
+    for (const Wall& wall : scene_.walls) room = std::min(room, wall.normal.dot(at) - wall.offset);
+    for (const Slab& slab : scene_.slabs) room = std::min(room, room_beside(slab, at));
+    for (const Barrier& barrier : scene_.barriers) room = std::min(room, room_beside(barrier, at));
+    if (room < size_[ball]) return room;
+    cells_.around(at, [&](std::size_t other) {
+      if (other != ball) room = std::min(room, (at - position_[other]).norm() - size_[other]);
+    });
+    return room;
+  }
+
+  template <class Sheet>
+  static double room_beside(const Sheet& sheet, const Vec3& at) {
+    return std::abs(sheet.normal.dot(at) - sheet.offset) - 0.5 * sheet.thickness;
+  }
+
+  Vec3 anywhere() {
+    Vec3 at = Vec3::Zero();
+    for (int axis = 0; axis < scene_.dimension; ++axis) {
+      at[axis] = random_.uniform(scene_.box->min[axis], scene_.box->max[axis]);
+    }
+    return at;
+  }
+
+  Vec3 nudge(double stride) {
+    Vec3 by = Vec3::Zero();
+    for (int axis = 0; axis < scene_.dimension; ++axis) by[axis] = random_.uniform(-stride, stride);
+    return by;
+  }
+
+  const Scenario& scene_;
+  Random& random_;
+  std::size_t count_;         ///< balls to place; behind them stand those that are there already
+  std::vector<double> full_;  ///< the radius each is to reach
+  std::vector<double> size_;  ///< the radius each has reached
+  std::vector<Vec3> position_;
+  std::vector<int> stirred_;  ///< the sweep in which a ball is to be moved, being near one that grows
+  int sweeps_ = 0;
+  Cells cells_;
+};
+
+}  // namespace
+
+std::vector<Vec3> place_at_random(const std::vector<double>& radii, const Scenario& scene, Random& random) {
+  return Placement(radii, scene, random).run();
+}
+
+}  // namespace carom

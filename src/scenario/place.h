@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "core/random.h"
+#include "scenario/scenario.h"
+
+namespace carom {
+
+/// Random positions for balls of the given radii inside scene.box, free of overlap with each other, with the
+/// scene's walls, slabs and barriers, and with the balls it has already.
+///
+/// Every ball starts as a point anywhere in the box and grows to its radius, while those that still grow and
+/// those around them are shuffled by Monte Carlo moves (what would overlap is not done). Unlike random
+/// insertion, which jams at 0.547 of the plane and 0.384 of space, this reaches every fluid packing.
+///
+/// @pre scene.box is set. @throws DoesNotFit (generate.h) where balls are left that cannot grow.
+std::vector<Vec3> place_at_random(const std::vector<double>& radii, const Scenario& scene, Random& random);
+
+}  // namespace carom

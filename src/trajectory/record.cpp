@@ -1,0 +1,196 @@
+#include "trajectory/record.h"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+
+namespace carom {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// An array in memory that stays shared across fork(). Pages are taken when they are first written.
+template <class T>
+std::shared_ptr<T[]> shared_array(std::size_t count) {
+  const std::size_t bytes = count * sizeof(T);
+  void* memory =
+      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) {
+    throw MachineError(
+        fmt::format("no memory for {} MiB of trajectory: {}", bytes >> 20U, std::strerror(errno)));
+  }
+  return {static_cast<T*>(memory), [bytes](T* start) { munmap(start, bytes); }};
+}
+
+double cpu_now() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+void record_frame(const Simulation& simulation, Trajectory& trajectory, std::size_t frame) {
+  // What an engine forgets to write must not pass for a ball at rest.
+  const Vec3 unwritten = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (BallState& state : trajectory.frame(frame)) state = {unwritten, unwritten, unwritten};
+  simulation.snapshot(trajectory.frame(frame));
+  trajectory.tally(frame) = simulation.tally();
+}
+
+/// The body of a recording process: simulates, records into the shared trajectory, returns the rest as JSON.
+std::string record(const Scenario& scenario, const EngineChoice& choice, Trajectory trajectory) {
+  const Engine& engine = choice.source.open();
+  const EngineInfo info = engine.info();
+  Json result = {{"version", info.version}, {"precision", info.precision}};
+  const std::string unsupported = unsupported_reason(engine, scenario, choice.profile);
+  if (!unsupported.empty()) {
+    result["unsupported"] = unsupported;
+    return result.dump();
+  }
+
+  const std::unique_ptr<Simulation> simulation = engine.create(scenario, choice.profile);
+  const std::int64_t steps = steps_per_frame(scenario);
+  const double interval_s = scenario.duration_s / static_cast<double>(scenario.frames);
+  double cpu_seconds = 0.0;
+  record_frame(*simulation, trajectory, 0);
+  for (std::size_t frame = 1; frame < trajectory.frames(); ++frame) {
+    const double before = cpu_now();
+    simulation->advance(interval_s / static_cast<double>(steps), steps);
+    cpu_seconds += cpu_now() - before;
+    record_frame(*simulation, trajectory, frame);
+  }
+
+  result["cpu_seconds"] = cpu_seconds;
+  result["steps"] = steps * scenario.frames;
+  result["uncertainty_m"] = simulation->uncertainty_m();
+  for (const auto& [name, value] : simulation->settings()) {
+    std::visit([&, &key = name](const auto& v) { result["settings"][key] = v; }, value);
+  }
+  return result.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+SettingValue setting_value(const Json& value) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) return value.get<std::string>();
+  return std::string("not finite");
+}
+
+/// The first state that is not finite, in words; empty where all are.
+std::string not_finite(const Trajectory& trajectory) {
+  for (std::size_t frame = 0; frame < trajectory.frames(); ++frame) {
+    const auto balls = trajectory.frame(frame);
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (balls[i].position.allFinite() && balls[i].velocity.allFinite() && balls[i].spin.allFinite())
+        continue;
+      return fmt::format("the state of ball {} is not finite at t = {:.6g} s", i, trajectory.time(frame));
+    }
+  }
+  return {};
+}
+
+void take_result(const std::string& payload, Run& run) {
+  const Json result = Json::parse(payload);
+  run.version = result.at("version");
+  run.precision = result.at("precision");
+  if (result.contains("unsupported")) {
+    run.status = RunStatus::unsupported;
+    run.reason = result.at("unsupported");
+    return;
+  }
+  run.cpu_seconds = result.at("cpu_seconds");
+  run.steps = result.at("steps");
+  run.uncertainty_m = result.at("uncertainty_m");
+  if (result.contains("settings")) {
+    for (const auto& [name, value] : result.at("settings").items()) run.settings[name] = setting_value(value);
+  }
+  run.reason = not_finite(run.trajectory);
+  if (!run.reason.empty()) run.status = RunStatus::invalid;
+}
+
+}  // namespace
+
+Trajectory::Trajectory(const Scenario& scenario)
+    : frames_(static_cast<std::size_t>(scenario.frames) + 1),
+      balls_(scenario.balls.size()),
+      duration_s_(scenario.duration_s),
+      states_(shared_array<BallState>(frames_ * balls_)),
+      tallies_(shared_array<Tally>(frames_)) {}
+
+std::int64_t steps_per_frame(const Scenario& scenario) {
+  const double steps = scenario.duration_s / static_cast<double>(scenario.frames) / scenario.step_s;
+  // A whole number that the two divisions above rounded up is that number: each errs by at most ½ε.
+  const double whole = std::ceil(steps * (1.0 - 2.0 * std::numeric_limits<double>::epsilon()));
+  return static_cast<std::int64_t>(std::max(whole, 1.0));
+}
+
+std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineChoice>& engines,
+                             const ProcessLimits& limits, int parallel,
+                             const std::function<void(std::size_t)>& done) {
+  std::vector<Run> runs;
+  std::vector<Job> jobs;
+  for (const EngineChoice& choice : engines) {
+    Run& run = runs.emplace_back();
+    run.engine = choice.source.name;
+    run.profile = choice.profile;
+    run.trajectory = Trajectory(scenario);
+    jobs.emplace_back(
+        [&scenario, &choice, trajectory = run.trajectory] { return record(scenario, choice, trajectory); });
+  }
+  const std::vector<ProcessOutcome> outcomes = run_isolated(jobs, limits, parallel, done);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (outcomes[i].end == ProcessEnd::finished) {
+      take_result(outcomes[i].payload, runs[i]);
+    } else {
+      runs[i].status = outcomes[i].end == ProcessEnd::timed_out ? RunStatus::timeout : RunStatus::crashed;
+      runs[i].reason = outcomes[i].reason;
+    }
+  }
+  return runs;
+}
+
+std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engines,
+                                         const ProcessLimits& limits, int parallel) {
+  std::vector<Job> jobs;
+  jobs.reserve(engines.size());
+  for (const EngineSource& source : engines) {
+    jobs.emplace_back([&source] {
+      const EngineInfo info = source.open().info();
+      Json json = {{"about", info.about}, {"version", info.version}, {"precision", info.precision}};
+      for (const Profile& profile : info.profiles) json["profiles"].push_back({profile.name, profile.about});
+      for (const auto& [feature, reason] : info.cannot) {
+        json["cannot"].push_back({static_cast<int>(feature), reason});
+      }
+      return json.dump();
+    });
+  }
+  const std::vector<ProcessOutcome> outcomes = run_isolated(jobs, limits, parallel);
+  std::vector<EngineInfo> infos;
+  for (std::size_t i = 0; i < engines.size(); ++i) {
+    EngineInfo& info = infos.emplace_back();
+    info.name = engines[i].name;
+    info.version = outcomes[i].reason;
+    if (outcomes[i].end != ProcessEnd::finished) continue;
+    const Json json = Json::parse(outcomes[i].payload);
+    info.about = json.at("about");
+    info.version = json.at("version");
+    info.precision = json.at("precision");
+    for (const Json& profile : json.value("profiles", Json::array())) {
+      info.profiles.push_back({profile.at(0), profile.at(1)});
+    }
+    for (const Json& row : json.value("cannot", Json::array())) {
+      info.cannot.emplace(static_cast<Feature>(row.at(0).get<int>()), row.at(1));
+    }
+  }
+  return infos;
+}
+
+}  // namespace carom

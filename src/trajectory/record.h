@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/engine.h"
+#include "trajectory/isolate.h"
+#include "trajectory/trajectory.h"
+
+namespace carom {
+
+/// An engine that can be asked for by name. It is opened only inside the process that runs it, so that a
+/// module which cannot even be loaded is a row of the result.
+struct EngineSource {
+  std::string name;
+  std::function<const Engine&()> open;
+};
+
+/// An engine in one of its profiles.
+struct EngineChoice {
+  EngineSource source;
+  std::string profile = "faithful";
+};
+
+/// Runs the scene in every engine, each in a process of its own, and hands back one Run for each, in order.
+std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineChoice>& engines,
+                             const ProcessLimits& limits, int parallel,
+                             const std::function<void(std::size_t)>& done = {});
+
+/// What an engine says of itself, asked in a process of its own; where that fails, `about` is empty and
+/// `version` gives the reason.
+std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engines,
+                                         const ProcessLimits& limits, int parallel);
+
+/// The number of equal steps, none longer than the scene's step, that an interval between frames is cut into.
+std::int64_t steps_per_frame(const Scenario& scenario);
+
+}  // namespace carom
