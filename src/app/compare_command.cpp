@@ -2,7 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <optional>
 #include <set>
 
 #include "app/commands.h"
@@ -33,41 +33,68 @@ std::vector<ScenarioPtr> load_scenes(const Options& options, const EngineCatalog
   const SceneOptions scene_options{options.step_s, options.seed, engines.names()};
   std::vector<ScenarioPtr> scenes;
   std::set<fs::path> seen;
+  std::set<std::string> ids;
   for (const std::string& word : options.scenes) {
     for (const fs::path& file : catalog.resolve(word)) {
-      if (seen.insert(fs::canonical(file)).second) scenes.push_back(load_scene(file, scene_options));
+      if (!seen.insert(fs::canonical(file)).second) continue;
+      scenes.push_back(load_scene(file, scene_options));
+      if (!ids.insert(scenes.back()->id).second) {
+        throw InputError(
+            fmt::format("{}: another scene has the id {} too", file.string(), scenes.back()->id));
+      }
     }
   }
   return scenes;
 }
 
-/// Every engine that was built in each of its profiles, or those that were named.
-std::vector<EngineChoice> choose_engines(const Options& options, const EngineCatalog& catalog,
-                                         const std::vector<EngineInfo>& infos) {
-  std::vector<EngineChoice> choices;
+/// An engine that was asked for, and what it says of itself.
+struct Participant {
+  EngineSource source;
+  std::optional<std::string> profile;  ///< none: every profile it has
+  EngineInfo info;
+};
+
+/// Every engine that was built, or those that were named.
+std::vector<Participant> participants(const Options& options, const EngineCatalog& catalog,
+                                      const ProcessLimits& limits) {
+  std::vector<Participant> all;
   if (options.engines.empty()) {
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-      const EngineSource& source = catalog.sources()[i];
-      if (infos[i].profiles.empty()) choices.push_back({source, "faithful"});
-      for (const Profile& profile : infos[i].profiles) choices.push_back({source, profile.name});
-    }
-    return choices;
+    for (const EngineSource& source : catalog.sources()) all.push_back({source, std::nullopt, {}});
   }
   for (const std::string& word : options.engines) {
     const std::size_t at = word.find('@');
-    const EngineSource& source = catalog.find(word.substr(0, at));
-    EngineChoice choice{source, at == std::string::npos ? "faithful" : word.substr(at + 1)};
-    std::vector<std::string> profiles = {"faithful"};
-    for (const EngineInfo& info : infos) {
-      if (info.name != source.name || info.profiles.empty()) continue;
-      profiles.clear();
-      for (const Profile& profile : info.profiles) profiles.push_back(profile.name);
-    }
-    if (std::find(profiles.begin(), profiles.end(), choice.profile) == profiles.end()) {
-      throw InputError(fmt::format("{} has no profile \"{}\"; allowed: {}", source.name, choice.profile,
+    const std::string profile = at == std::string::npos ? "faithful" : word.substr(at + 1);
+    all.push_back({catalog.find(word.substr(0, at)), profile, {}});
+  }
+  std::vector<EngineSource> sources;
+  for (const Participant& each : all) sources.push_back(each.source);
+  std::vector<EngineInfo> infos = describe_engines(sources, limits, options.parallel);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].info = std::move(infos[i]);
+  return all;
+}
+
+/// Each engine in the profiles asked for, every pair once.
+std::vector<EngineChoice> choose_engines(const std::vector<Participant>& participants) {
+  std::vector<EngineChoice> choices;
+  const auto add = [&](const EngineSource& source, const std::string& profile) {
+    const bool named_before = std::any_of(choices.begin(), choices.end(), [&](const EngineChoice& other) {
+      return other.source.name == source.name && other.profile == profile;
+    });
+    if (!named_before) choices.push_back({source, profile});
+  };
+  for (const Participant& each : participants) {
+    std::vector<std::string> profiles;
+    for (const Profile& profile : each.info.profiles) profiles.push_back(profile.name);
+    // One that cannot even be opened takes part all the same, and its row says why.
+    if (profiles.empty()) profiles.push_back(each.profile.value_or("faithful"));
+    if (!each.profile) {
+      for (const std::string& profile : profiles) add(each.source, profile);
+    } else if (std::find(profiles.begin(), profiles.end(), *each.profile) != profiles.end()) {
+      add(each.source, *each.profile);
+    } else {
+      throw InputError(fmt::format("{} has no profile \"{}\"; allowed: {}", each.source.name, *each.profile,
                                    fmt::join(profiles, ", ")));
     }
-    choices.push_back(std::move(choice));
   }
   return choices;
 }
@@ -168,13 +195,12 @@ ExitCode compare_command(const Options& options) {
   results.version = CAROM_VERSION;
   results.machine = this_machine();
   results.missing = catalog.missing();
-  const std::vector<EngineInfo> infos = describe_engines(catalog.sources(), limits, options.parallel);
-  const std::vector<EngineChoice> engines = choose_engines(options, catalog, infos);
-  for (const EngineInfo& info : infos) {
-    const bool takes_part = std::any_of(engines.begin(), engines.end(), [&](const EngineChoice& choice) {
-      return choice.source.name == info.name;
-    });
-    if (takes_part) results.engines.push_back(info);
+  const std::vector<Participant> taking_part = participants(options, catalog, limits);
+  const std::vector<EngineChoice> engines = choose_engines(taking_part);
+  for (const Participant& each : taking_part) {
+    const bool told = std::any_of(results.engines.begin(), results.engines.end(),
+                                  [&](const EngineInfo& info) { return info.name == each.info.name; });
+    if (!told) results.engines.push_back(each.info);
   }
 
   {

@@ -50,8 +50,15 @@ EngineCatalog::EngineCatalog(const fs::path& modules, const std::vector<std::str
     }
   }
   for (const std::string& folder : extra) {
-    for (const fs::path& file : modules_in(folder))
-      sources_.push_back(module_source(file.stem().string(), file));
+    for (const fs::path& file : modules_in(folder)) {
+      const std::string name = file.stem().string();
+      const std::vector<std::string> taken = names();
+      if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
+        throw InputError(
+            fmt::format("{}: there is an engine {} already, rename the module", file.string(), name));
+      }
+      sources_.push_back(module_source(name, file));
+    }
   }
 }
 

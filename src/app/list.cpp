@@ -20,39 +20,64 @@ void list_scenarios() {
   }
 }
 
-void list_engine(const EngineInfo& info) {
-  if (info.about.empty()) {
-    fmt::print("  {:<12} cannot be opened: {}\n", info.name, info.version);
-    return;
+constexpr std::size_t kColumns = 80;
+
+/// Words after an indented heading, broken into lines of a terminal's width.
+void print_wrapped(std::string_view heading, std::string_view text) {
+  const std::string indent(heading.size(), ' ');
+  std::string line(heading);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    if (line.size() + 1 + end > kColumns && line.size() > heading.size()) {
+      fmt::print("{}\n", line);
+      line = indent;
+    }
+    if (line.size() > heading.size()) line += ' ';
+    line += text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
-  fmt::print("  {:<12} {} {}, {}\n", info.name, info.version, info.precision, info.about);
-  for (const Profile& profile : info.profiles) {
-    fmt::print("    @{:<10} {}\n", profile.name, profile.about);
-  }
-  std::vector<std::string_view> can;
-  for (const FeatureName& feature : all_features()) {
-    if (!info.cannot.contains(feature.feature)) can.push_back(feature.name);
-  }
-  fmt::print("    can: {}\n", fmt::join(can, ", "));
-  for (const auto& [feature, reason] : info.cannot)
-    fmt::print("    cannot: {} ({})\n", name_of(feature), reason);
+  fmt::print("{}\n", line);
 }
 
-void list_engines(const Options& options) {
-  const EngineCatalog catalog(engine_folder(), options.engines_from);
+void list_engine(const EngineInfo& info) {
+  if (info.about.empty()) {
+    print_wrapped(fmt::format("  {:<12} ", info.name), "cannot be opened: " + info.version);
+    return;
+  }
+  print_wrapped(fmt::format("  {:<12} ", info.name),
+                fmt::format("{}, {}. {}", info.version, info.precision, info.about));
+  for (const Profile& profile : info.profiles) {
+    print_wrapped(fmt::format("    @{:<9} ", profile.name), profile.about);
+  }
+  for (const auto& [feature, reason] : info.cannot) {
+    print_wrapped("    cannot     ", fmt::format("{}: {}", name_of(feature), reason));
+  }
+}
+
+std::vector<EngineInfo> described(const Options& options, const EngineCatalog& catalog) {
+  return describe_engines(catalog.sources(), {options.timeout_s, options.memory_mib}, options.parallel);
+}
+
+void list_engines(const Options& options, const EngineCatalog& catalog) {
   fmt::print("Engines (--engine NAME or NAME@PROFILE):\n");
-  const ProcessLimits limits{options.timeout_s, options.memory_mib};
-  for (const EngineInfo& info : describe_engines(catalog.sources(), limits, options.parallel))
-    list_engine(info);
+  for (const EngineInfo& info : described(options, catalog)) list_engine(info);
   for (const MissingEngine& engine : catalog.missing()) {
     fmt::print("  {:<12} is not built: {} is not installed\n", engine.name, engine.package);
   }
 }
 
-void list_effects() {
-  fmt::print("Effects and other things a scene can ask for:\n");
-  for (const FeatureName& feature : all_features())
-    fmt::print("  {:<24} {}\n", feature.name, feature.meaning);
+void list_effects(const Options& options, const EngineCatalog& catalog) {
+  fmt::print("Effects and what else a scene can ask for, and the engines that can do it:\n");
+  const std::vector<EngineInfo> infos = described(options, catalog);
+  for (const FeatureName& feature : all_features()) {
+    std::vector<std::string> able;
+    for (const EngineInfo& info : infos) {
+      if (!info.about.empty() && !info.cannot.contains(feature.feature)) able.push_back(info.name);
+    }
+    fmt::print("  {:<23} {}\n", feature.name, feature.meaning);
+    print_wrapped(std::string(26, ' '),
+                  able.empty() ? "no engine yet" : fmt::format("{}", fmt::join(able, ", ")));
+  }
 }
 
 }  // namespace
@@ -60,9 +85,10 @@ void list_effects() {
 ExitCode list_command(const Options& options) {
   if (options.topic.empty() || options.topic == "scenarios") list_scenarios();
   if (options.topic.empty()) fmt::print("\n");
-  if (options.topic.empty() || options.topic == "engines") list_engines(options);
+  const EngineCatalog catalog(engine_folder(), options.engines_from);
+  if (options.topic.empty() || options.topic == "engines") list_engines(options, catalog);
   if (options.topic.empty()) fmt::print("\n");
-  if (options.topic.empty() || options.topic == "effects") list_effects();
+  if (options.topic.empty() || options.topic == "effects") list_effects(options, catalog);
   return ExitCode::holds;
 }
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -12,18 +14,33 @@ namespace carom {
 
 namespace {
 
-ExitCode run_command(const Options& options) {
+int run(int argc, char** argv) {
+  const Parsed parsed = parse_options(argc, argv);
+  if (parsed.exit_code) return *parsed.exit_code;
+  const Options& options = parsed.options;
+  return static_cast<int>(options.command == "list" ? list_command(options) : compare_command(options));
+}
+
+/// What was printed may still wait in a buffer, and a full disk shows only when it leaves.
+void flush_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw MachineError(fmt::format("the output cannot be written: {}", std::strerror(errno)));
+}
+
+int run_and_flush(int argc, char** argv) {
   try {
-    return options.command == "list" ? list_command(options) : compare_command(options);
+    const int exit_code = run(argc, argv);
+    flush_output();
+    return exit_code;
   } catch (const InputError& error) {
     fmt::print(stderr, "carom: {}\n", error.what());
-    return ExitCode::bad_input;
+    return static_cast<int>(ExitCode::bad_input);
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "carom: out of memory\n");
   } catch (const std::exception& error) {
     fmt::print(stderr, "carom: {}\n", error.what());
   }
-  return ExitCode::machine_failed;
+  return static_cast<int>(ExitCode::machine_failed);
 }
 
 }  // namespace
@@ -31,7 +48,5 @@ ExitCode run_command(const Options& options) {
 }  // namespace carom
 
 int main(int argc, char** argv) {
-  const carom::Parsed parsed = carom::parse_options(argc, argv);
-  if (parsed.exit_code) return *parsed.exit_code;
-  return static_cast<int>(carom::run_command(parsed.options));
+  return carom::run_and_flush(argc, argv);
 }

@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <thread>
 
 namespace carom {
@@ -12,6 +15,37 @@ namespace carom {
 namespace {
 
 constexpr int kExitUsage = 2;
+
+// CLI11's own checks let NaN through, wrap negative seeds around and print the ends of ranges with 300
+// digits.
+
+CLI::Validator number_from(double low, const std::string& allowed) {
+  const auto check = [low, allowed](const std::string& text) {
+    double value = 0.0;
+    const bool reads = CLI::detail::lexical_cast(text, value);
+    return reads && value >= low && std::isfinite(value)
+               ? std::string()
+               : fmt::format("found {}, allowed: {}", text, allowed);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator seed() {
+  const auto check = [](const std::string& text) {
+    std::uint64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && stop == end ? std::string()
+                                               : fmt::format("found {}, allowed: an integer from 0 to {}",
+                                                             text, std::numeric_limits<std::uint64_t>::max());
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](const std::string& text) { return text.empty() ? "found nothing, allowed: a path" : ""; }, "");
+}
 
 void add_scene_options(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.scenes, "an id, a path, a group (impact/), or all")->required();
@@ -22,9 +56,11 @@ void add_scene_options(CLI::App& command, Options& options) {
       ->expected(1)
       ->take_all();
   command.add_option("--step", options.step_s, "the fixed step in s, instead of the scene's")
-      ->check(CLI::Range(1e-300, 1e300).description("a number > 0"));
-  command.add_option("--seed", options.seed, "the seed of every generator, instead of the scene's");
-  command.add_option("--json", options.json_file, "write the results as JSON to this file");
+      ->check(number_from(std::numeric_limits<double>::min(), "a number > 0"));
+  command.add_option("--seed", options.seed, "the seed of every generator, instead of the scene's")
+      ->check(seed());
+  command.add_option("--json", options.json_file, "write the results as JSON to this file")
+      ->check(not_empty());
   command.add_flag("--all-balls", options.all_balls, "list the final state of every ball in the JSON");
 }
 
@@ -33,10 +69,10 @@ void add_common_options(CLI::App& command, Options& options) {
       ->check(CLI::Range(1, 1024));
   command.add_option("--timeout", options.timeout_s, "the limit of one run in s")
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(number_from(1e-3, "a number of seconds >= 0.001"));
   command.add_option("--memory", options.memory_mib, "the memory limit of one run in MiB")
       ->capture_default_str()
-      ->check(CLI::Range(1.0, 1e9));
+      ->check(number_from(1.0, "a number of MiB >= 1"));
   command.add_flag("--quiet", options.quiet, "no progress, and no table where every gate holds");
   command.add_flag_callback(
       "--no-color", [&options] { options.color = false; }, "no colours (also: the NO_COLOR variable)");
@@ -64,7 +100,7 @@ Parsed parse_options(int argc, char** argv) {
       "says where they part.");
   app.name("carom");
   app.set_version_flag("--version", std::string("carom ") + CAROM_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // none is an error too, but an unknown one is to be named
   app.footer(
       "Exit codes: 0 every gate holds; 1 a gate is violated, or an engine under test\n"
       "crashed, hung, gave NaN or cannot run a scene that gates it; 2 bad usage or bad\n"
@@ -80,30 +116,38 @@ Parsed parse_options(int argc, char** argv) {
 
   CLI::App* run = app.add_subcommand("run", "run side by side, compare, print a table");
   add_scene_options(*run, options);
-  run->add_option("--csv", options.csv_folder, "write every trajectory as CSV below this folder");
-  run->add_option("--report", options.report_folder, "write the page DIR/index.html");
+  run->add_option("--csv", options.csv_folder, "write every trajectory as CSV below this folder")
+      ->check(not_empty());
+  run->add_option("--report", options.report_folder, "write the page DIR/index.html")->check(not_empty());
   add_common_options(*run, options);
 
   CLI::App* check = app.add_subcommand("check", "the CI gate: as run, and says which gate is violated");
   add_scene_options(*check, options);
-  check->add_option("--junit", options.junit_file, "write JUnit XML to this file");
-  check->add_option("--summary", options.summary_file, "write a Markdown summary to this file");
+  check->add_option("--junit", options.junit_file, "write JUnit XML to this file")->check(not_empty());
+  check->add_option("--summary", options.summary_file, "write a Markdown summary to this file")
+      ->check(not_empty());
   add_common_options(*check, options);
 
   CLI::App* help = app.add_subcommand("help", "help on a command");
   help->add_option("COMMAND", options.topic, "list, run, check or help")
       ->check(CLI::IsMember({"list", "run", "check", "help"}));
 
+  // Once a command line is parsed, help() is that of the command it names.
+  const std::string overview = app.help();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     parsed.exit_code = report(app, error);
     return parsed;
   }
+  if (app.get_subcommands().empty()) {
+    fmt::print(stderr, "carom: a command is missing\nTry: carom help\n");
+    parsed.exit_code = kExitUsage;
+    return parsed;
+  }
   options.command = app.get_subcommands().front()->get_name();
   if (options.command == "help") {
-    const CLI::App* about = options.topic.empty() ? &app : app.get_subcommand(options.topic);
-    fmt::print("{}", about->help());
+    fmt::print("{}", options.topic.empty() ? overview : app.get_subcommand(options.topic)->help("carom"));
     parsed.exit_code = 0;
   }
   return parsed;

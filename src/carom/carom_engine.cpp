@@ -21,7 +21,7 @@ class CaromEngine final : public Engine {
 EngineInfo carom_engine_info() {
   EngineInfo info;
   info.name = "carom";
-  info.about = "The hand-written engine: fixed steps, every impact at its time within the step.";
+  info.about = "The hand-written engine: fixed steps, every impact at its time within the step";
   info.version = CAROM_VERSION;
   info.precision = "float64";
   info.profiles = {{"faithful", "As a user would run it."}};

@@ -25,17 +25,29 @@ std::string read_file(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+namespace {
+
+void write_bytes(const std::filesystem::path& file, std::string_view bytes) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) throw std::filesystem::filesystem_error("write", file, {errno, std::generic_category()});
+}
+
+}  // namespace
+
 void write_file(const std::filesystem::path& file, std::string_view bytes) {
-  const std::filesystem::path temporary = fmt::format("{}.{}.tmp", file.string(), getpid());
+  std::filesystem::path temporary;
   try {
-    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-    {
-      std::ofstream out(temporary, std::ios::binary);
-      out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-      out.close();
-      if (!out) throw std::filesystem::filesystem_error("write", temporary, {errno, std::generic_category()});
-    }
-    std::filesystem::rename(temporary, file);
+    // A link is followed; a device or a pipe is written to and must not be replaced by a file.
+    const bool exists = std::filesystem::exists(file);
+    const std::filesystem::path target = exists ? std::filesystem::canonical(file) : file;
+    if (exists && !std::filesystem::is_regular_file(target)) return write_bytes(target, bytes);
+    if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path());
+    temporary = fmt::format("{}.{}.tmp", target.string(), getpid());
+    write_bytes(temporary, bytes);
+    std::filesystem::rename(temporary, target);
   } catch (const std::filesystem::filesystem_error& error) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);

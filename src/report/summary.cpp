@@ -39,7 +39,7 @@ std::string cell(std::string_view text) {
 std::string results_summary(const Results& results) {
   const std::vector<std::string> broken = violations(results);
   std::string text = "## carom check\n\n";
-  text += broken.empty() ? "Every gate holds.\n\n" : fmt::format("**{} violated:**\n\n", broken.size());
+  text += broken.empty() ? all_is_well(results) + "\n\n" : fmt::format("**{} violated:**\n\n", broken.size());
   for (const std::string& line : broken) text += fmt::format("- {}\n", cell(line));
   if (!broken.empty()) text += "\n";
   text += "| scene | engine | verdict | position, m | energy | momentum |\n|---|---|---|--:|--:|--:|\n";

@@ -30,7 +30,7 @@ std::string verdict_word(Verdict verdict, bool color) {
 }
 
 std::string truth_words(const SceneComparison& scene) {
-  if (!scene.truth.known()) return "no truth: " + scene.truth.reason;
+  if (!scene.truth.known()) return fmt::format("truth: none, {}", scene.truth.reason);
   return fmt::format("truth: {}, known to {:.1g} m", scene.truth.kind, scene.truth.uncertainty_m);
 }
 
@@ -64,7 +64,7 @@ std::string results_table(const Results& results, bool color) {
   }
   const std::vector<std::string> broken = violations(results);
   for (const std::string& line : broken) text += fmt::format("violated: {}\n", line);
-  if (broken.empty()) text += "Every gate holds.\n";
+  if (broken.empty()) text += all_is_well(results) + "\n";
   return text;
 }
 

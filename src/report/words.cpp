@@ -42,4 +42,27 @@ std::vector<std::string> violations(const Results& results) {
   return all;
 }
 
+std::string all_is_well(const Results& results) {
+  std::size_t gates = 0;
+  std::size_t scenes = 0;
+  std::size_t errors = 0;
+  for (const SceneComparison& scene : results.scenes) {
+    std::size_t in_scene = 0;
+    for (const RunComparison& run : scene.runs) {
+      in_scene += run.gates.size();
+      errors += run.verdict == Verdict::error ? 1 : 0;
+    }
+    gates += in_scene;
+    scenes += in_scene > 0 ? 1 : 0;
+  }
+  const auto counted = [](std::size_t count, std::string_view what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  std::string text = gates == 0 ? "No gate: nothing was checked."
+                                : fmt::format("Every gate holds: {} in {}.", counted(gates, "limit"),
+                                              counted(scenes, "scene"));
+  if (errors > 0) text += fmt::format(" {} not under test ended in error.", counted(errors, "run"));
+  return text;
+}
+
 }  // namespace carom

@@ -17,4 +17,7 @@ std::vector<std::string> violations(const Results& results);
 /// The violations of one run; empty where it violates nothing.
 std::vector<std::string> violations(const SceneComparison& scene, const RunComparison& run);
 
+/// One sentence on what was checked, for results in which nothing is violated.
+std::string all_is_well(const Results& results);
+
 }  // namespace carom

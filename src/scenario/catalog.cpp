@@ -14,12 +14,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// In the order of ids: impact/head-on before impact/head-on-hard, although '-' stands before the '.' of
+/// ".toml".
+void sort_by_id(std::vector<fs::path>& files) {
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return std::pair(a.parent_path(), a.stem()) < std::pair(b.parent_path(), b.stem());
+  });
+}
+
 std::vector<fs::path> toml_files_in(const fs::path& group) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(group)) {
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    if (entry.is_regular_file() && entry.path().extension() == ".toml") files.push_back(entry.path());
   }
-  std::sort(files.begin(), files.end());
+  sort_by_id(files);
   return files;
 }
 
@@ -34,7 +42,7 @@ std::vector<fs::path> Catalog::all() const {
     const std::vector<fs::path> in_group = toml_files_in(group);
     files.insert(files.end(), in_group.begin(), in_group.end());
   }
-  std::sort(files.begin(), files.end());
+  sort_by_id(files);
   return files;
 }
 

@@ -99,7 +99,7 @@ void give_speeds(const Generator& g, int dimension, Random& random, std::vector<
 
 /// A row of balls, equal gaps between surfaces; with a box and no gap they are spread over it evenly.
 void place_line(const Generator& g, const Scenario& scene, std::vector<Ball>& balls) {
-  const Vec3 direction = g.direction.value_or(Vec3::UnitX()).normalized();
+  const Vec3 direction = g.direction.value_or(Vec3::UnitX()).stableNormalized();
   double diameters = 0.0;
   for (const Ball& ball : balls) diameters += 2.0 * ball.radius;
 
@@ -177,18 +177,49 @@ void place_lattice(const Generator& g, const Scenario& scene, std::vector<Ball>&
   }
 }
 
-/// Lines and lattices stand where they are told to, so they are checked; a gas is placed free of overlap.
-void check_inside(const Scenario& scene, const std::vector<Ball>& balls) {
+/// @throws DoesNotFit where the gap beside a ball is negative by more than the rounding of its coordinates:
+/// balls may be meant to touch.
+void check_gap(const Ball& ball, double gap, double other_size, std::string_view does) {
+  const double rounding = 8.0 * std::numeric_limits<double>::epsilon() *
+                          (ball.position.cwiseAbs().sum() + std::abs(other_size) + ball.radius);
+  if (gap >= -rounding) return;
+  throw DoesNotFit(fmt::format("a ball at ({:.6g}, {:.6g}, {:.6g}) {} by {:.3g} m", ball.position.x(),
+                               ball.position.y(), ball.position.z(), does, -gap));
+}
+
+void check_solids(const Scenario& scene, const std::vector<Ball>& balls) {
   for (const Ball& ball : balls) {
     for (const Wall& wall : scene.walls) {
-      const double gap = wall.normal.dot(ball.position) - wall.offset - ball.radius;
-      // A ball that is meant to touch a wall may reach behind it by the rounding of its coordinates.
-      const double rounding = 8.0 * std::numeric_limits<double>::epsilon() *
-                              (ball.position.cwiseAbs().sum() + std::abs(wall.offset) + ball.radius);
-      if (gap < -rounding) {
-        throw DoesNotFit(fmt::format("a ball at ({:.6g}, {:.6g}, {:.6g}) reaches {:.3g} m behind a wall",
-                                     ball.position.x(), ball.position.y(), ball.position.z(), -gap));
-      }
+      check_gap(ball, wall.normal.dot(ball.position) - wall.offset - ball.radius, wall.offset,
+                "reaches behind a wall");
+    }
+    const auto check_beside = [&](const auto& sheet, std::string_view does) {
+      const double distance =
+          std::abs(sheet.normal.dot(ball.position) - sheet.offset) - 0.5 * sheet.thickness;
+      check_gap(ball, distance - ball.radius, sheet.offset, does);
+    };
+    for (const Slab& slab : scene.slabs) check_beside(slab, "reaches into a slab");
+    for (const Barrier& barrier : scene.barriers) check_beside(barrier, "reaches into a barrier");
+  }
+}
+
+/// Balls against those that are there already. Sorted by their lower ends along x, only those whose extents
+/// meet are looked at.
+void check_others(const Scenario& scene, const std::vector<Ball>& balls) {
+  std::vector<Ball> others = scene.balls;
+  const auto low = [](const Ball& ball) { return ball.position.x() - ball.radius; };
+  const auto by_low = [&](const Ball& a, const Ball& b) { return low(a) < low(b); };
+  std::sort(others.begin(), others.end(), by_low);
+  double widest = 0.0;
+  for (const Ball& other : others) widest = std::max(widest, 2.0 * other.radius);
+  for (const Ball& ball : balls) {
+    Ball first = ball;
+    first.position.x() -= widest;
+    for (auto other = std::lower_bound(others.begin(), others.end(), first, by_low);
+         other != others.end() && low(*other) <= ball.position.x() + ball.radius; ++other) {
+      const double distance = (ball.position - other->position).norm();
+      check_gap(ball, distance - ball.radius - other->radius, other->position.cwiseAbs().sum(),
+                "overlaps another ball");
     }
   }
 }
@@ -213,7 +244,11 @@ std::vector<Ball> generate(const Generator& g, Scenario& scene) {
       place_lattice(g, scene, balls);
       break;
   }
-  if (g.kind != Generator::Kind::gas) check_inside(scene, balls);
+  // Lines and lattices stand where they are told to, so they are checked; a gas is placed free of overlap.
+  if (g.kind != Generator::Kind::gas) {
+    check_solids(scene, balls);
+    check_others(scene, balls);
+  }
   give_speeds(g, scene.dimension, random, balls);
   return balls;
 }

@@ -20,6 +20,8 @@ namespace {
 /// More balls or frames than this are a typing error rather than a scene.
 constexpr std::int64_t kMostBalls = 100'000'000;
 constexpr std::int64_t kMostFrames = 10'000'000;
+/// At a nanosecond each these take eleven days.
+constexpr double kMostSteps = 1e15;
 constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
 
 std::string sha256_hex(std::string_view bytes) {
@@ -74,7 +76,7 @@ Box read_box(Reader reader, int dimension) {
   box.min = reader.required("min", reader.vector("min", dimension));
   box.max = reader.required("max", reader.vector("max", dimension));
   for (int axis = 0; axis < dimension; ++axis) {
-    if (box.min[axis] >= box.max[axis]) reader.fail("max", "every coordinate must be above that of min");
+    if (box.min[axis] >= box.max[axis]) reader.fail_value("max", "above min in every coordinate");
   }
   reader.finish();
   return box;
@@ -95,9 +97,10 @@ template <class Plane>
 Plane read_plane(Reader& reader, int dimension) {
   Plane plane;
   const Vec3 normal = reader.required("normal", reader.vector("normal", dimension));
-  if (normal.norm() == 0.0) reader.fail("normal", "found the zero vector, allowed: a direction");
-  plane.offset = reader.required("offset", reader.number("offset", kFinite)) / normal.norm();
-  plane.normal = normal.normalized();
+  if (normal.isZero(0.0)) reader.fail_value("normal", "a direction");
+  // The stable forms do not square numbers whose squares are no doubles.
+  plane.offset = reader.required("offset", reader.number("offset", kFinite)) / normal.stableNorm();
+  plane.normal = normal.stableNormalized();
   return plane;
 }
 
@@ -163,9 +166,7 @@ Generator read_generator(Reader& reader, const Scenario& scene, const SceneOptio
   }
   if (g.kind == Kind::line) {
     g.direction = reader.vector("direction", scene.dimension);
-    if (g.direction && g.direction->norm() == 0.0) {
-      reader.fail("direction", "found the zero vector, allowed: a direction");
-    }
+    if (g.direction && g.direction->isZero(0.0)) reader.fail_value("direction", "a direction");
   }
   if (!g.radius && !g.packing) reader.fail("radius", "is missing");
   if (g.mass && g.density) reader.fail("density", "mass is given too, allowed: one of the two");
@@ -254,6 +255,10 @@ void read_scene(Reader& root, const SceneOptions& options, Scenario& scene) {
   scene.step_s = root.required("step", root.number("step", kPositive));
   if (options.step_s) scene.step_s = *options.step_s;
   scene.frames = root.required("frames", root.integer("frames", 1, kMostFrames));
+  if (scene.duration_s / scene.step_s > kMostSteps) {
+    root.fail("step",
+              fmt::format("found {}, allowed: at least {} of the duration", scene.step_s, 1.0 / kMostSteps));
+  }
   if (auto effects = root.table("effects")) scene.effects = read_effects(*effects, scene.dimension);
   read_contacts(root, scene);
   read_solids(root, scene);
@@ -288,7 +293,10 @@ ScenarioPtr load_scene(const std::filesystem::path& file, const SceneOptions& op
   const ScenarioPtr parsed = parse_scene(read_file(file), file.string(), options);
   auto scene = std::make_shared<Scenario>(*parsed);
   const std::filesystem::path absolute = std::filesystem::absolute(file);
-  scene->id = fmt::format("{}/{}", absolute.parent_path().filename().string(), absolute.stem().string());
+  const std::string group = absolute.parent_path().filename().string();
+  // A file in the root folder has no group; an id with a leading slash would be taken for an absolute path.
+  scene->id =
+      group.empty() ? absolute.stem().string() : fmt::format("{}/{}", group, absolute.stem().string());
   return scene;
 }
 

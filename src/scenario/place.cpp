@@ -21,9 +21,13 @@ constexpr double kClearance = 1e-9;
 /// How far a ball is moved in one trial at most, in its radii: the gaps of a dense fluid are of this size.
 constexpr double kStride = 0.5;
 
-/// Sweeps without a single further ball at its full size after which the placement gives up. In a fluid some
-/// ball arrives nearly every sweep.
-constexpr int kPatience = 400;
+/// Sweeps without a single further ball at its full size after which the placement gives up. In a fluid of
+/// many balls one arrives nearly every sweep; among few, or among very different ones, the last can wait for
+/// thousands.
+int patience(std::size_t balls) {
+  constexpr std::size_t kTrials = 4'000'000;
+  return static_cast<int>(std::max<std::size_t>(400, kTrials / std::max<std::size_t>(balls, 1000)));
+}
 
 /// Only balls near one that still grows are moved in most sweeps; a dense corner is relieved from further
 /// away.
@@ -130,7 +134,7 @@ class Placement {
   std::vector<Vec3> run() {
     std::size_t grown = 0;
     for (int waited = 0; grown < count_; ++waited) {
-      if (waited > kPatience) {
+      if (waited > patience(count_)) {
         throw DoesNotFit(
             fmt::format("{} of {} balls fit into the box with the rest, and no more do", grown, count_));
       }

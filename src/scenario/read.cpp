@@ -12,15 +12,30 @@ namespace carom {
 
 namespace {
 
+/// The shortest digits that mean this double, still marked as no integer.
+std::string real_number(double value) {
+  const std::string digits = fmt::format("{}", value);
+  return digits.find_first_not_of("-0123456789") == std::string::npos ? digits + ".0" : digits;
+}
+
 /// What stands in the file, as the reader of the error would write it.
 std::string found(const toml::node& node) {
   if (node.is_table()) return "a table";
-  if (const auto* array = node.as_array(); array != nullptr && array->size() > 4) {
-    return fmt::format("an array of {}", array->size());
+  if (const auto* value = node.as_floating_point()) return real_number(value->get());
+  if (const auto* array = node.as_array()) {
+    if (array->empty()) return "[]";
+    if (array->size() > 4) return fmt::format("an array of {}", array->size());
+    std::vector<std::string> elements;
+    for (const toml::node& element : *array) elements.push_back(found(element));
+    return fmt::format("[ {} ]", fmt::join(elements, ", "));
   }
   std::ostringstream out;
   node.visit([&out](const auto& value) { out << value; });
   return out.str();
+}
+
+std::string finite_numbers(int length) {
+  return fmt::format("an array of {} finite numbers", length);
 }
 
 std::string expected(const toml::node& node, std::string_view allowed) {
@@ -29,7 +44,8 @@ std::string expected(const toml::node& node, std::string_view allowed) {
 
 }  // namespace
 
-const toml::node* Reader::find(std::string_view key) {
+const toml::node* Reader::find(std::string_view key, std::string allowed) {
+  allowed_last_ = std::move(allowed);
   if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.push_back(key);
   return table_->get(key);
 }
@@ -42,6 +58,11 @@ std::string Reader::path_of(std::string_view key) const {
 void Reader::fail_at(const toml::node& node, std::string_view path, std::string_view problem) const {
   const auto& place = node.source().begin;
   throw InputError(fmt::format("{}:{}:{}: {}: {}", file_, place.line, place.column, path, problem));
+}
+
+void Reader::fail_value(std::string_view key, std::string_view allowed) const {
+  const toml::node* node = table_->get(key);
+  fail(key, node != nullptr ? expected(*node, allowed) : fmt::format("is missing, allowed: {}", allowed));
 }
 
 void Reader::fail(std::string_view key, std::string_view problem) const {
@@ -58,7 +79,7 @@ double Reader::number_in(const toml::node& node, std::string_view path, const Ra
 Vec3 Reader::vector_in(const toml::node& node, std::string_view path, int length) const {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != static_cast<std::size_t>(length)) {
-    fail_at(node, path, expected(node, fmt::format("an array of {} finite numbers", length)));
+    fail_at(node, path, expected(node, finite_numbers(length)));
   }
   Vec3 vector = Vec3::Zero();
   for (int axis = 0; axis < length; ++axis) {
@@ -68,7 +89,7 @@ Vec3 Reader::vector_in(const toml::node& node, std::string_view path, int length
 }
 
 std::optional<double> Reader::number(std::string_view key, const Range& range) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, std::string(range.allowed));
   if (node == nullptr) return std::nullopt;
   return number_in(*node, path_of(key), range);
 }
@@ -78,42 +99,42 @@ double Reader::number_or(std::string_view key, const Range& range, double otherw
 }
 
 std::optional<std::int64_t> Reader::integer(std::string_view key, std::int64_t low, std::int64_t high) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, fmt::format("an integer from {} to {}", low, high));
   if (node == nullptr) return std::nullopt;
   const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
   if (!value || *value < low || *value > high) {
-    fail_at(*node, path_of(key), expected(*node, fmt::format("an integer from {} to {}", low, high)));
+    fail_at(*node, path_of(key), expected(*node, allowed_last_));
   }
   return value;
 }
 
 std::optional<bool> Reader::boolean(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, "true or false");
   if (node == nullptr) return std::nullopt;
-  if (!node->is_boolean()) fail_at(*node, path_of(key), expected(*node, "true or false"));
+  if (!node->is_boolean()) fail_at(*node, path_of(key), expected(*node, allowed_last_));
   return node->value<bool>();
 }
 
 std::optional<std::string> Reader::text(std::string_view key) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, "a string");
   if (node == nullptr) return std::nullopt;
-  if (!node->is_string()) fail_at(*node, path_of(key), expected(*node, "a string"));
+  if (!node->is_string()) fail_at(*node, path_of(key), expected(*node, allowed_last_));
   return node->value<std::string>();
 }
 
 std::optional<std::size_t> Reader::word(std::string_view key, const std::vector<std::string_view>& allowed) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, fmt::format("\"{}\"", fmt::join(allowed, "\", \"")));
   if (node == nullptr) return std::nullopt;
   const auto value = node->is_string() ? node->value<std::string>() : std::nullopt;
   const auto match = value ? std::find(allowed.begin(), allowed.end(), *value) : allowed.end();
   if (match == allowed.end()) {
-    fail_at(*node, path_of(key), expected(*node, fmt::format("\"{}\"", fmt::join(allowed, "\", \""))));
+    fail_at(*node, path_of(key), expected(*node, allowed_last_));
   }
   return static_cast<std::size_t>(match - allowed.begin());
 }
 
 std::optional<Vec3> Reader::vector(std::string_view key, int dimension) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, finite_numbers(dimension));
   if (node == nullptr) return std::nullopt;
   return vector_in(*node, path_of(key), dimension);
 }

@@ -65,9 +65,10 @@ class Reader {
   /// Every key of this table with its sub-table; all of them must be tables. For names chosen by the user.
   std::vector<std::pair<std::string, Reader>> remaining_tables();
 
+  /// The value just read from `key`. @throws InputError where the file has none.
   template <class T>
   T required(std::string_view key, std::optional<T> value) const {
-    if (!value) fail(key, "is missing");
+    if (!value) fail(key, "is missing, allowed: " + allowed_last_);
     return *std::move(value);
   }
 
@@ -77,10 +78,14 @@ class Reader {
   /// @throws InputError at the key's place, or at the table's where the key is absent or empty.
   [[noreturn]] void fail(std::string_view key, std::string_view problem) const;
 
+  /// The same, saying what was found at the key.
+  [[noreturn]] void fail_value(std::string_view key, std::string_view allowed) const;
+
   const std::string& path() const { return path_; }
 
  private:
-  const toml::node* find(std::string_view key);
+  /// The key's node; remembers that it was asked for, and what it allows.
+  const toml::node* find(std::string_view key, std::string allowed = {});
   std::string path_of(std::string_view key) const;
   [[noreturn]] void fail_at(const toml::node& node, std::string_view path, std::string_view problem) const;
   double number_in(const toml::node& node, std::string_view path, const Range& range) const;
@@ -90,6 +95,7 @@ class Reader {
   std::string_view file_;
   std::string path_;
   std::vector<std::string_view> asked_;
+  std::string allowed_last_;
 };
 
 }  // namespace carom

@@ -18,6 +18,7 @@
 #include <exception>
 #include <fstream>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "core/error.h"
@@ -93,6 +94,8 @@ void limit_memory(double memory_mib) {
   try {
     write_all(payload.write, job() + kWhole);
     _exit(kExitFinished);
+  } catch (const std::bad_alloc&) {
+    write_all(STDERR_FILENO, fmt::format("out of memory (--memory {:g} MiB)", limits.memory_mib));
   } catch (const std::exception& error) {
     write_all(STDERR_FILENO, error.what());
   } catch (...) {

@@ -34,7 +34,7 @@ class TestEngine final : public Engine {
   EngineInfo info() const override {
     EngineInfo info;
     info.name = "test";
-    info.about = "An engine that is broken on purpose.";
+    info.about = "An engine that is broken on purpose";
     info.version = "1";
     info.precision = "float64";
     info.profiles = {{"faithful", "Broken."}};

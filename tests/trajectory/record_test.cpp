@@ -128,7 +128,7 @@ std::vector<BrokenCase> broken_cases() {
   };
 #if !defined( \
     __SANITIZE_ADDRESS__)  // which reserves all the address space there is, so that no limit can be set
-  cases.push_back({"broken-memory", RunStatus::crashed, "bad_alloc"});
+  cases.push_back({"broken-memory", RunStatus::crashed, "out of memory (--memory 512 MiB)"});
 #endif
   return cases;
 }
@@ -163,7 +163,7 @@ TEST(Record, WhatAnEngineCannotDo_IsUnsupported_WithTheReason) {
 
 TEST(Describe, TellsWhatAnEngineSays_AndWhyOneCannotBeOpened) {
   const auto infos = describe_engines({free_flight(), broken("no-such-module")}, {}, 2);
-  EXPECT_EQ(infos[0].about, "An engine that is broken on purpose.");
+  EXPECT_EQ(infos[0].about, "An engine that is broken on purpose");
   ASSERT_EQ(infos[0].profiles.size(), 1U);
   EXPECT_EQ(infos[0].profiles[0].name, "faithful");
   EXPECT_TRUE(infos[1].about.empty());
