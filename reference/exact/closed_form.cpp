@@ -74,7 +74,8 @@ class ClosedFormEngine final : public Engine {
             .cannot = {{Feature::magnus, unsolved},
                        {Feature::slab, unsolved},
                        {Feature::barrier, unsolved},
-                       {Feature::events, unsolved}}};
+                       {Feature::events, unsolved}},
+            .limits = {}};
   }
 
   std::string refuses(const Scenario& scenario, std::string_view) const override {

@@ -49,6 +49,7 @@ void list_engine(const EngineInfo& info) {
   for (const Profile& profile : info.profiles) {
     print_wrapped(fmt::format("    @{:<9} ", profile.name), profile.about);
   }
+  for (const std::string& limit : info.limits) print_wrapped("    limit      ", limit);
   for (const auto& [feature, reason] : info.cannot) {
     print_wrapped("    cannot     ", fmt::format("{}: {}", name_of(feature), reason));
   }

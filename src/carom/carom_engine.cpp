@@ -25,6 +25,10 @@ EngineInfo carom_engine_info() {
   info.version = CAROM_VERSION;
   info.precision = "float64";
   info.profiles = {{"faithful", "As a user would run it."}};
+  info.limits = {
+      "Flight under drag is of second order in the step; everything else is exact but for rounding.",
+      "Impacts at one moment are resolved one after the other, so what touching balls do depends on their order.",
+  };
   info.cannot = {
       {Feature::spin, "carom's balls do not rotate yet"},
       {Feature::magnus, "needs spin, and carom's balls do not rotate yet"},

@@ -79,6 +79,7 @@ struct EngineInfo {
   std::string precision;  ///< "float32" or "float64"
   std::vector<Profile> profiles;
   std::map<Feature, std::string> cannot;  ///< features it lacks, each with the reason; all others it has
+  std::vector<std::string> limits;        ///< what it does only so well, and why, a sentence each
 };
 
 class Engine {

@@ -164,7 +164,7 @@ std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engine
   for (const EngineSource& source : engines) {
     jobs.emplace_back([&source] {
       const EngineInfo info = source.open().info();
-      Json json = {{"about", info.about}, {"version", info.version}, {"precision", info.precision}};
+      Json json = {{"about", info.about}, {"version", info.version}, {"precision", info.precision}, {"limits", info.limits}};
       for (const Profile& profile : info.profiles) json["profiles"].push_back({profile.name, profile.about});
       for (const auto& [feature, reason] : info.cannot) {
         json["cannot"].push_back({static_cast<int>(feature), reason});
@@ -183,6 +183,7 @@ std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engine
     info.about = json.at("about");
     info.version = json.at("version");
     info.precision = json.at("precision");
+    info.limits = json.at("limits").get<std::vector<std::string>>();
     for (const Json& profile : json.value("profiles", Json::array())) {
       info.profiles.push_back({profile.at(0), profile.at(1)});
     }

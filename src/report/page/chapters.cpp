@@ -20,6 +20,13 @@ void add_profiles(Node parent, const EngineInfo& engine) {
 }
 
 void add_limits(Node parent, const EngineInfo& engine) {
+  if (engine.limits.empty()) return;
+  add(parent, "h4", {}, "Where it stops being right, and why");
+  Node list = add(parent, "ul");
+  for (const std::string& limit : engine.limits) add(list, "li", {}, limit);
+}
+
+void add_lacks(Node parent, const EngineInfo& engine) {
   if (engine.cannot.empty()) {
     add(parent, "p", {}, "It can run everything that a scene can ask for.");
     return;
@@ -43,6 +50,7 @@ void add_engine(Node parent, const EngineInfo& engine) {
       fmt::format("{} Version {}, {}.", sentence(engine.about), engine.version, engine.precision));
   add_profiles(article, engine);
   add_limits(article, engine);
+  add_lacks(article, engine);
 }
 
 }  // namespace
