@@ -30,14 +30,17 @@ class BulletEngine final : public Engine {
         {"default", "the settings of its own HelloWorld example"},
     };
     info.limits = {
-        "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, and an "
+        "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, "
+        "and an "
         "oblique impact turns by the angle of that place. Only a shorter step helps.",
         "Drag and gravity are integrated with order 1 in the step.",
-        "Rough balls in contact do not keep their angular momentum: friction acts at two points, an overlap apart.",
+        "Rough balls in contact do not keep their angular momentum: friction acts at two points, an overlap "
+        "apart.",
     };
 #if !defined(BT_USE_DOUBLE_PRECISION)
     info.limits.emplace_back(
-        "Single precision: velocities after an impact are right to about 1e-7, positions to 1e-7 of the scene.");
+        "Single precision: velocities after an impact are right to about 1e-7, positions to 1e-7 of the "
+        "scene.");
 #endif
     info.cannot = {
         {Feature::tangential_restitution, "its friction law has no tangential rebound"},

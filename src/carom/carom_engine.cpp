@@ -27,7 +27,8 @@ EngineInfo carom_engine_info() {
   info.profiles = {{"faithful", "As a user would run it."}};
   info.limits = {
       "Flight under drag is of second order in the step; everything else is exact but for rounding.",
-      "Impacts at one moment are resolved one after the other, so what touching balls do depends on their order.",
+      "Impacts at one moment are resolved one after the other, so what touching balls do depends on their "
+      "order.",
   };
   info.cannot = {
       {Feature::spin, "carom's balls do not rotate yet"},

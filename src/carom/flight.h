@@ -39,26 +39,38 @@ class FlightModel {
   /// The acceleration of a ball for the next `tau_s` seconds.
   Vec<Dim> acceleration(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity,
                         double tau_s) const {
-    const auto sum = [&](const Effects&... effect) {
-      Vec<Dim> a = Vec<Dim>::Zero();
-      (add_acceleration(effect, world, ball, a), ...);
-      if constexpr (kDamps) {
-        const auto damped = [&](const Vec<Dim>& at) -> Vec<Dim> {
-          double rate = 0.0;
-          (add_rate(effect, world, ball, at, rate), ...);
-          return (a - rate * velocity) / (1.0 + 0.5 * rate * tau_s);
-        };
-        // The rate at the start predicts the midpoint; the rate there is what (2) needs for second order.
-        const Vec<Dim> midpoint = velocity + (0.5 * tau_s) * damped(velocity);
-        return damped(midpoint);
-      } else {
-        return a;
-      }
-    };
-    return std::apply(sum, effects_);
+    Vec<Dim> a = Vec<Dim>::Zero();
+    std::apply([&](const Effects&... effect) { (add_acceleration(effect, world, ball, a), ...); }, effects_);
+    if constexpr (kDamps) {
+      const double rate = midpoint_rate(world, ball, velocity, a, tau_s);
+      a = (a - rate * velocity) / (1.0 + 0.5 * rate * tau_s);
+    }
+    return a;
+  }
+
+  /// By how much less than 1/m a force accelerates the ball over `tau_s`, because its own motion is damped: a
+  /// force N beside the effects turns (2) into a = (a₀ + N/m - λ v)/(1 + ½ λ τ), and this is 1/(1 + ½ λ τ).
+  double yield(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity, double tau_s) const {
+    if constexpr (!kDamps) return 1.0;
+    Vec<Dim> a = Vec<Dim>::Zero();
+    std::apply([&](const Effects&... effect) { (add_acceleration(effect, world, ball, a), ...); }, effects_);
+    return 1.0 / (1.0 + 0.5 * tau_s * midpoint_rate(world, ball, velocity, a, tau_s));
   }
 
  private:
+  /// λ at the midpoint that λ at the start predicts; with it (2) is of second order.
+  double midpoint_rate(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity, const Vec<Dim>& a,
+                       double tau_s) const {
+    const auto rate_at = [&](const Vec<Dim>& at) {
+      double rate = 0.0;
+      std::apply([&](const Effects&... effect) { (add_rate(effect, world, ball, at, rate), ...); }, effects_);
+      return rate;
+    };
+    const double first = rate_at(velocity);
+    const Vec<Dim> change = (a - first * velocity) / (1.0 + 0.5 * first * tau_s);
+    return rate_at(velocity + (0.5 * tau_s) * change);
+  }
+
   template <class Effect>
   static void add_acceleration(const Effect& effect, const World<Dim>& world, std::size_t ball, Vec<Dim>& a) {
     if constexpr (!Effect::kDamps) a += effect.acceleration(world, ball);

@@ -22,14 +22,20 @@ inline double velocity_rounding(double speed_sum_mps) {
   return 8.0 * kEpsilon * speed_sum_mps;
 }
 
-/// Solves gap + v t + ½ a t² = 0 for the time at which the gap closes, whatever the sign of a.
-/// @param rounding  a speed below which v is zero (velocity_rounding())
-inline double time_to_close(double gap, double v, double a, double rounding) {
+/// Whether bodies that touch, or overlap, close: they approach, or do neither and are pushed together by an
+/// acceleration that within the horizon gives more than rounding.
+inline bool closes(double v, double a, double rounding, double horizon_s) {
+  return v < -rounding || (v <= rounding && a * horizon_s < -rounding);
+}
+
+/// Solves gap + v t + ½ a t² = 0 for the time at which the gap closes, whatever the sign of a. Bodies that
+/// overlap and part are given until they fall back to where they are.
+/// @param rounding   a speed below which v is zero (velocity_rounding())
+/// @param horizon_s  how far ahead the caller looks
+inline double time_to_close(double gap, double v, double a, double rounding, double horizon_s) {
   if (gap <= 0.0) {
-    const bool closing = v < -rounding || (v <= rounding && a < 0.0);
-    if (closing) return 0.0;
-    if (v <= rounding || a >= 0.0) return kNever;
-    return (v + std::sqrt(v * v - 2.0 * a * gap)) / -a;  // parts, and falls back
+    if (closes(v, a, rounding, horizon_s)) return 0.0;
+    return v > rounding && a < 0.0 ? 2.0 * v / -a : kNever;
   }
   const double discriminant = v * v - 2.0 * a * gap;
   if (discriminant < 0.0) return kNever;
@@ -66,18 +72,21 @@ double time_to_touch(const Vec<Dim>& d, const Vec<Dim>& w, double sigma, double 
   return (distance - sigma) * (distance + sigma) / (-b + std::sqrt((reach - miss) * (reach + miss)));
 }
 
-/// When two balls touch that are accelerated differently: the first time at which
-/// f(t) = |d + w t + ½ a t²|² - σ², a polynomial of degree four, falls through zero, up to `horizon_s`.
+/// When two balls touch that are accelerated differently: the first time up to `horizon_s` at which
+/// f(t) = |d + w t + ½ a t²|² - σ², a polynomial of degree four, falls through zero. Balls that overlap and
+/// part are given until they fall back to where they are: then (f(t) - f(0))/t falls through zero.
 template <int Dim>
 double time_to_touch(const Vec<Dim>& d, const Vec<Dim>& w, const Vec<Dim>& a, double sigma, double rounding,
                      double horizon_s) {
   const double distance = d.norm();
+  const Polynomial from_here = {2.0 * d.dot(w), w.squaredNorm() + d.dot(a), w.dot(a), 0.25 * a.squaredNorm()};
   if (distance <= sigma) {
-    const double v_n = d.dot(w) / distance;
-    if (v_n < -rounding || (v_n <= rounding && d.dot(a) < 0.0)) return 0.0;
+    const double scale = distance > 0.0 ? distance : 1.0;
+    if (closes(d.dot(w) / scale, d.dot(a) / scale, rounding, horizon_s)) return 0.0;
+    return first_fall_through_zero(from_here, horizon_s).value_or(kNever);
   }
-  const Polynomial f = {(distance - sigma) * (distance + sigma), 2.0 * d.dot(w), w.squaredNorm() + d.dot(a),
-                        w.dot(a), 0.25 * a.squaredNorm()};
+  Polynomial f = {(distance - sigma) * (distance + sigma)};
+  f.insert(f.end(), from_here.begin(), from_here.end());
   return first_fall_through_zero(f, horizon_s).value_or(kNever);
 }
 

@@ -30,7 +30,8 @@ std::optional<double> largest(const std::vector<double>& values) {
 }
 
 std::optional<double> above_zero(std::optional<double> value) {
-  return value ? std::optional(std::max(*value, 0.0)) : value;
+  // In this order -0 becomes 0.
+  return value ? std::optional(std::max(0.0, *value)) : value;
 }
 
 bool moving_immovable(const Scenario& s) {
@@ -80,11 +81,11 @@ class Comparer {
     double squares = 0.0;
     for (std::size_t k = 0; k < conserved_a.size(); ++k) {
       positions.push_back(farthest(run_a.trajectory, run_b.trajectory, k, &squares));
-      energies.push_back(std::abs(conserved_a[k].energy_J - conserved_b[k].energy_J) / energy_scale());
-      momenta.push_back((conserved_a[k].momentum_Ns - conserved_b[k].momentum_Ns).norm() / momentum_scale());
+      energies.push_back(by_energy(std::abs(conserved_a[k].energy_J - conserved_b[k].energy_J)));
+      momenta.push_back(by_momentum((conserved_a[k].momentum_Ns - conserved_b[k].momentum_Ns).norm()));
     }
     result.position_m = *largest(positions);
-    result.position_rms_m = root_mean_square(squares, run_a.trajectory);
+    result.position_rms_m = root_mean_square(squares, positions.size() * run_a.trajectory.balls());
     result.energy = largest(energies);
     result.momentum = largest(momenta);
     result.first_divergence = divergence_of(run_a.trajectory, run_b.trajectory, positions, energies, momenta);
@@ -92,12 +93,14 @@ class Comparer {
   }
 
  private:
-  // A scale of zero makes 0/0 = NaN of every deviation that is zero, and that is "does not apply".
-  double energy_scale() const {
-    return reference_.energy_scale_J > 0.0 ? reference_.energy_scale_J : kNotKnown;
+  /// A deviation by its scale. Where the scale is zero no deviation is none, and any other cannot be told.
+  static double relative(double deviation, double scale) {
+    if (scale > 0.0) return deviation / scale;
+    return deviation == 0.0 ? 0.0 : kNotKnown;
   }
-  double momentum_scale() const {
-    return reference_.momentum_scale_Ns > 0.0 ? reference_.momentum_scale_Ns : kNotKnown;
+  double by_energy(double deviation_J) const { return relative(deviation_J, reference_.energy_scale_J); }
+  double by_momentum(double deviation_Ns) const {
+    return relative(deviation_Ns, reference_.momentum_scale_Ns);
   }
 
   std::vector<Conserved> conserved_of(const Trajectory& trajectory) const {
@@ -129,7 +132,6 @@ class Comparer {
   }
 
   // --- energy
-  // ------------------------------------------------------------------------------------------------
 
   void measure_energy(const std::vector<Conserved>& conserved, RunComparison& result) const {
     std::vector<double> gains;
@@ -137,15 +139,15 @@ class Comparer {
     double lowest = reference_.start.energy_J;
     for (std::size_t k = 0; k < conserved.size(); ++k) {
       const double energy = conserved[k].energy_J;
-      result.series.energy.push_back((energy - reference_.start.energy_J) / energy_scale());
+      result.series.energy.push_back(by_energy(energy - reference_.start.energy_J));
       if (truth_known_at(k)) {
-        gains.push_back(energy_off_truth(conserved[k], k) / energy_scale());
+        gains.push_back(by_energy(energy_off_truth(conserved[k], k)));
         losses.push_back(-gains.back());
       } else if (!moving_immovable(scene_) && scene_.events.empty()) {
         if (dissipates(scene_)) {
-          gains.push_back((energy - lowest) / energy_scale());
+          gains.push_back(by_energy(energy - lowest));
         } else {
-          gains.push_back((energy - reference_.start.energy_J) / energy_scale());
+          gains.push_back(by_energy(energy - reference_.start.energy_J));
           losses.push_back(-gains.back());
         }
       }
@@ -159,11 +161,10 @@ class Comparer {
   }
 
   // --- momentum
-  // ----------------------------------------------------------------------------------------------
 
   void measure_momentum(const std::vector<Conserved>& conserved, RunComparison& result) const {
     for (std::size_t k = 0; k < conserved.size(); ++k) {
-      result.series.momentum.push_back(momentum_error(conserved[k], result.run, k) / momentum_scale());
+      result.series.momentum.push_back(by_momentum(momentum_error(conserved[k], result.run, k)));
     }
     result.metrics[Metric::momentum] = largest(result.series.momentum);
   }
@@ -197,14 +198,12 @@ class Comparer {
   }
 
   // --- angular momentum
-  // --------------------------------------------------------------------------------------
 
   std::vector<double> angular_momentum_errors(const std::vector<Conserved>& conserved, const Run& run) const {
-    const double scale =
-        reference_.angular_momentum_scale_Nms > 0.0 ? reference_.angular_momentum_scale_Nms : kNotKnown;
     std::vector<double> errors;
     for (std::size_t k = 0; k < conserved.size(); ++k) {
-      errors.push_back(angular_momentum_error(conserved[k], run, k) / scale);
+      errors.push_back(
+          relative(angular_momentum_error(conserved[k], run, k), reference_.angular_momentum_scale_Nms));
     }
     return errors;
   }
@@ -238,7 +237,6 @@ class Comparer {
   }
 
   // --- positions
-  // ---------------------------------------------------------------------------------------------
 
   void measure_positions(RunComparison& result) const {
     double squares = 0.0;
@@ -248,7 +246,11 @@ class Comparer {
     }
     result.metrics[Metric::position] = largest(result.series.position);
     if (truth_.known()) {
-      result.metrics[Metric::position_rms] = root_mean_square(squares, result.run.trajectory);
+      const std::vector<double>& errors = result.series.position;
+      const auto known =
+          std::count_if(errors.begin(), errors.end(), [](double error) { return !std::isnan(error); });
+      result.metrics[Metric::position_rms] =
+          root_mean_square(squares, static_cast<std::size_t>(known) * result.run.trajectory.balls());
     }
   }
 
@@ -265,11 +267,8 @@ class Comparer {
     return std::sqrt(farthest_square);
   }
 
-  double root_mean_square(double squares, const Trajectory& trajectory) const {
-    std::size_t frames = 0;
-    for (std::size_t k = 0; k < trajectory.frames(); ++k)
-      frames += !truth_.known() || truth_known_at(k) ? 1 : 0;
-    return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(frames * trajectory.balls(), 1)));
+  static double root_mean_square(double squares, std::size_t count) {
+    return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
   }
 
   void measure_contact(RunComparison& result) const {
@@ -292,7 +291,6 @@ class Comparer {
   }
 
   // --- divergence
-  // --------------------------------------------------------------------------------------------
 
   std::optional<Divergence> first_divergence(const RunComparison& result) const {
     if (!truth_.known()) return std::nullopt;
@@ -300,7 +298,7 @@ class Comparer {
     std::vector<double> energies;
     for (std::size_t k = 0; k < conserved.size(); ++k) {
       const bool known = truth_known_at(k);
-      energies.push_back(known ? std::abs(energy_off_truth(conserved[k], k)) / energy_scale() : kNotKnown);
+      energies.push_back(known ? by_energy(std::abs(energy_off_truth(conserved[k], k))) : kNotKnown);
     }
     return divergence_of(result.run.trajectory, truth_.trajectory, result.series.position, energies,
                          result.series.momentum);
@@ -353,13 +351,14 @@ class Comparer {
 };
 
 // --- gates
-// ---------------------------------------------------------------------------------------------------
 
-/// [gate.<engine>] where there is one, else [gate] for the engines under test.
+/// [gate] for the engines under test, and over it what [gate.<engine>] says of one engine.
 Limits limits_for(const Gate& gate, const RunComparison& result) {
+  Limits limits = result.under_test ? gate.under_test : Limits{};
   const auto own = gate.per_engine.find(result.run.label());
-  if (own != gate.per_engine.end()) return own->second;
-  return result.under_test ? gate.under_test : Limits{};
+  if (own == gate.per_engine.end()) return limits;
+  for (const auto& [metric, limit] : own->second) limits[metric] = limit;
+  return limits;
 }
 
 void hold_gates(const Limits& limits, RunComparison& result) {

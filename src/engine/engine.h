@@ -107,8 +107,9 @@ class Engine {
 /// where it can.
 std::string unsupported_reason(const Engine& engine, const Scenario& scenario, std::string_view profile);
 
-/// The symbol by which a loadable engine module hands out its engine (see module.h).
-#define CAROM_ENGINE_SYMBOL carom_engine
+/// The symbol by which a loadable engine module hands out its engine (see modules.h). Its number goes up with
+/// every change of this interface, so that a module of an older build is refused and does not crash.
+#define CAROM_ENGINE_SYMBOL carom_engine_1
 using EngineFactory = Engine* (*)();
 
 }  // namespace carom

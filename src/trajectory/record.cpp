@@ -87,6 +87,11 @@ SettingValue setting_value(const Json& value) {
 /// The first state that is not finite, in words; empty where all are.
 std::string not_finite(const Trajectory& trajectory) {
   for (std::size_t frame = 0; frame < trajectory.frames(); ++frame) {
+    const Tally& tally = trajectory.tally(frame);
+    if (!tally.external_impulse.allFinite() || !tally.external_angular_impulse.allFinite()) {
+      return fmt::format("the account of the walls' impulses is not finite at t = {:.6g} s",
+                         trajectory.time(frame));
+    }
     const auto balls = trajectory.frame(frame);
     for (std::size_t i = 0; i < balls.size(); ++i) {
       if (balls[i].position.allFinite() && balls[i].velocity.allFinite() && balls[i].spin.allFinite())
@@ -137,6 +142,14 @@ std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineC
                              const std::function<void(std::size_t)>& done) {
   std::vector<Run> runs;
   std::vector<Job> jobs;
+  const double trajectory_mib = static_cast<double>(sizeof(BallState)) *
+                                static_cast<double>(scenario.balls.size()) *
+                                static_cast<double>(scenario.frames + 1) / (1024.0 * 1024.0);
+  if (trajectory_mib > limits.memory_mib) {
+    throw MachineError(fmt::format("{}: {} balls in {} frames take {:.0f} MiB, more than --memory {:g}",
+                                   scenario.file, scenario.balls.size(), scenario.frames + 1, trajectory_mib,
+                                   limits.memory_mib));
+  }
   for (const EngineChoice& choice : engines) {
     Run& run = runs.emplace_back();
     run.engine = choice.source.name;
@@ -164,7 +177,10 @@ std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engine
   for (const EngineSource& source : engines) {
     jobs.emplace_back([&source] {
       const EngineInfo info = source.open().info();
-      Json json = {{"about", info.about}, {"version", info.version}, {"precision", info.precision}, {"limits", info.limits}};
+      Json json = {{"about", info.about},
+                   {"version", info.version},
+                   {"precision", info.precision},
+                   {"limits", info.limits}};
       for (const Profile& profile : info.profiles) json["profiles"].push_back({profile.name, profile.about});
       for (const auto& [feature, reason] : info.cannot) {
         json["cannot"].push_back({static_cast<int>(feature), reason});

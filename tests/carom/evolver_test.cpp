@@ -216,6 +216,68 @@ TEST(ToiEvolver, TwoBallsOnEachOther_StayInPlace) {
   EXPECT_NEAR(states[1].position.y(), 0.3, 1e-9);
 }
 
+TEST(ToiEvolver, BallInATiltedCorner_ComesToRestInIt) {
+  Scenario scene = free_scene(2, {ball(1, 0.1, Vec3(0, 0.5, 0))}, 3.0, 0.01);
+  scene.effects.gravity = Vec3(0, -9.81, 0);
+  scene.wall_contact.restitution = 0.5;
+  const double tilt = 0.65;
+  scene.walls = {{Vec3(std::sin(tilt), std::cos(tilt), 0), 0.0},
+                 {Vec3(-std::cos(tilt), std::sin(tilt), 0), 0.0}};
+  const auto simulation = compose<Frictionless>(scene);
+  const auto states = run(*simulation, scene, 300);
+  for (const Wall& wall : scene.walls) {
+    // Rebounds that are left out are lower than g (step/1000)²/8 = 1.2e-10 m.
+    EXPECT_NEAR(wall.normal.dot(states[0].position), 0.1, 2e-10);
+  }
+  const Vec3 weight(0, -9.81 * scene.duration_s, 0);
+  const Vec3 unexplained = states[0].velocity - weight - simulation->tally().external_impulse;
+  EXPECT_LE(unexplained.norm(), 1e-10);
+}
+
+TEST(ToiEvolver, RestingBallUnderDrag_IsBorneByItsWholeWeight) {
+  Scenario scene = dropped(0.0, 0.5, 2.0);
+  scene.effects.drag = Drag{Drag::Kind::linear, 3.0};
+  const auto simulation = compose<Frictionless>(scene);
+  run(*simulation, scene, 200);
+  EXPECT_NEAR(simulation->tally().external_impulse.y(), 9.81 * scene.duration_s, 1e-12);
+}
+
+TEST(ToiEvolver, StackThatIsHit_AccountsForTheFloor) {
+  Scenario scene = dropped(0.0, 0.5, 1.0);
+  scene.ball_contact.restitution = 0.5;
+  scene.balls.push_back(ball(1, 0.1, Vec3(0, 0.3, 0)));
+  scene.balls.push_back(ball(2, 0.1, Vec3(0.02, 1.0, 0)));
+  const auto simulation = compose<Frictionless>(scene);
+  const auto states = run(*simulation, scene, 240);
+  const Vec3 expected = Vec3(0, -9.81 * 4.0 * scene.duration_s, 0) + simulation->tally().external_impulse;
+  EXPECT_LE((momentum_of(scene, states) - expected).norm(), 1e-9);
+}
+
+TEST(ToiEvolver, Pile_SettlesWithoutSinkingOrGainingEnergy) {
+  const ScenarioPtr scene =
+      gas(2, 20, 0.3, 2.0, 5, "[effects]\ngravity = [0, -9.81]\n[contact]\nrestitution = 0.3\n");
+  const auto simulation = compose<Frictionless>(*scene);
+  const auto energy = [&](const std::vector<BallState>& states) {
+    double sum = kinetic_energy_of(*scene, states);
+    for (std::size_t i = 0; i < states.size(); ++i)
+      sum += 9.81 * scene->balls[i].mass * states[i].position.y();
+    return sum;
+  };
+  double last = energy(states_of(*scene));
+  const double scale = last;
+  for (int k = 0; k < 300; ++k) {
+    simulation->advance(0.005, 1);
+    const auto states = states_of(*simulation, scene->balls.size());
+    // Contacts that are held a little apart, or together, move a ball by at most a hundredth of ½ g h² in a
+    // step.
+    EXPECT_LE(energy(states), last + 1e-5 * scale) << "step " << k;
+    last = energy(states);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      EXPECT_GE(states[i].position.y(), scene->balls[i].radius - 1e-5) << "ball " << i << ", step " << k;
+    }
+  }
+}
+
 TEST(ToiEvolver, InelasticCollapse_Ends) {
   // Three balls with e < 7 - 4√3 collide infinitely often in finite time. S. McNamara, W. R. Young, Phys.
   // Fluids A 4, 496 (1992).

@@ -12,29 +12,34 @@ namespace {
 using Vec2 = Vec<2>;
 
 TEST(TimeToClose, UniformMotion_IsGapOverSpeed) {
-  EXPECT_EQ(time_to_close(2.0, -4.0, 0.0, 0.0), 0.5);
-  EXPECT_EQ(time_to_close(2.0, 4.0, 0.0, 0.0), kNever);
-  EXPECT_EQ(time_to_close(2.0, 0.0, 0.0, 0.0), kNever);
+  EXPECT_EQ(time_to_close(2.0, -4.0, 0.0, 0.0, 1.0), 0.5);
+  EXPECT_EQ(time_to_close(2.0, 4.0, 0.0, 0.0, 1.0), kNever);
+  EXPECT_EQ(time_to_close(2.0, 0.0, 0.0, 0.0, 1.0), kNever);
 }
 
 TEST(TimeToClose, OverlapAndApproach_IsNow_OverlapAndParting_IsNever) {
-  EXPECT_EQ(time_to_close(-1e-12, -1.0, 0.0, 1e-15), 0.0);
-  EXPECT_EQ(time_to_close(-1e-12, 1.0, 0.0, 1e-15), kNever);
-  EXPECT_EQ(time_to_close(0.0, 0.0, -9.81, 1e-15), 0.0);
+  EXPECT_EQ(time_to_close(-1e-12, -1.0, 0.0, 1e-15, 1.0), 0.0);
+  EXPECT_EQ(time_to_close(-1e-12, 1.0, 0.0, 1e-15, 1.0), kNever);
+  EXPECT_EQ(time_to_close(0.0, 0.0, -9.81, 1e-15, 1.0), 0.0);
 }
 
 TEST(TimeToClose, ThrownUpFromContact_FallsBack) {
   // From the floor with v: back after 2 v/g.
-  EXPECT_DOUBLE_EQ(time_to_close(0.0, 3.0, -10.0, 1e-15), 0.6);
+  EXPECT_DOUBLE_EQ(time_to_close(0.0, 3.0, -10.0, 1e-15, 1.0), 0.6);
+}
+
+TEST(TimeToClose, OverlapThatParts_FallsBackToWhereItIs) {
+  // Deeper than the throw is high, so the gap never opens: back at the present depth after 2 v/g.
+  EXPECT_DOUBLE_EQ(time_to_close(-1.0, 3.0, -10.0, 1e-15, 1.0), 0.6);
 }
 
 TEST(TimeToClose, TurnsBeforeTheWall_IsNever) {
-  EXPECT_EQ(time_to_close(1.0, -1.0, 1.0, 0.0), kNever);
+  EXPECT_EQ(time_to_close(1.0, -1.0, 1.0, 0.0, 1.0), kNever);
 }
 
 TEST(TimeToClose, TinyGapUnderGravity_DoesNotCancel) {
   // gap = v t to first order; the naive root (-v - √(v² - 2 a gap))/a loses all digits here.
-  const double time = time_to_close(1e-18, -1.0, -9.81, 0.0);
+  const double time = time_to_close(1e-18, -1.0, -9.81, 0.0, 1.0);
   EXPECT_NEAR(time, 1e-18, 4.0 * kEpsilon * 1e-18);
 }
 

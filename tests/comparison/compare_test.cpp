@@ -244,6 +244,17 @@ TEST(Gates, AreForTheEngineUnderTest_AndForThoseWithATableOfTheirOwn) {
   EXPECT_FALSE(result.runs[2].violates());
 }
 
+TEST(Gates, ATableForTheEngineUnderTest_AddsToTheCommonOne) {
+  const auto scene = one_ball();
+  scene->gate.under_test[Metric::energy] = 1e-6;
+  scene->gate.under_test[Metric::momentum] = 1e-6;
+  scene->gate.per_engine["engine"][Metric::momentum] = 1e-3;
+  const std::vector<GateResult> gates = compared(scene, straight()).runs[0].gates;
+  ASSERT_EQ(gates.size(), 2U);
+  EXPECT_EQ(gates[0].limit, 1e-6);
+  EXPECT_EQ(gates[1].limit, 1e-3);
+}
+
 TEST(Gates, OnWhatCannotBeTold_CannotHold) {
   const auto scene = one_ball();
   scene->gate.under_test[Metric::position] = 1.0;
