@@ -78,8 +78,11 @@ class Comparer {
     std::vector<double> positions;
     std::vector<double> energies;
     std::vector<double> momenta;
+    std::vector<double> angular_momenta;
     double squares = 0.0;
     for (std::size_t k = 0; k < conserved_a.size(); ++k) {
+      const Vec3 angular = conserved_a[k].angular_momentum_Nms - conserved_b[k].angular_momentum_Nms;
+      angular_momenta.push_back(relative(angular.norm(), reference_.angular_momentum_scale_Nms));
       positions.push_back(farthest(run_a.trajectory, run_b.trajectory, k, &squares));
       energies.push_back(by_energy(std::abs(conserved_a[k].energy_J - conserved_b[k].energy_J)));
       momenta.push_back(by_momentum((conserved_a[k].momentum_Ns - conserved_b[k].momentum_Ns).norm()));
@@ -88,6 +91,7 @@ class Comparer {
     result.position_rms_m = root_mean_square(squares, positions.size() * run_a.trajectory.balls());
     result.energy = largest(energies);
     result.momentum = largest(momenta);
+    result.angular_momentum = largest(angular_momenta);
     result.first_divergence = divergence_of(run_a.trajectory, run_b.trajectory, positions, energies, momenta);
     return result;
   }

@@ -77,8 +77,9 @@ struct PairComparison {
   std::size_t b = 0;
   double position_m = 0.0;  ///< max over balls and frames of |x_a - x_b|
   double position_rms_m = 0.0;
-  std::optional<double> energy;    ///< max |E_a - E_b| / E_scale
-  std::optional<double> momentum;  ///< max |P_a - P_b| / P_scale
+  std::optional<double> energy;            ///< max |E_a - E_b| / E_scale
+  std::optional<double> momentum;          ///< max |P_a - P_b| / P_scale
+  std::optional<double> angular_momentum;  ///< max |L_a - L_b| / L_scale
   std::optional<Divergence> first_divergence;
 };
 

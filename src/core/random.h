@@ -46,11 +46,13 @@ class Random {
   /// x > u1 > u2 > … the length is even with exactly this probability.
   bool happens_with_exp_of_minus(double x) {
     bool even = true;
-    for (double last = x, next = uniform(); next < last; next = uniform()) {
+    double last = x;
+    while (true) {
+      const double next = uniform();
+      if (next >= last) return even;
       last = next;
       even = !even;
     }
-    return even;
   }
 
   std::mt19937_64 generator_;

@@ -99,6 +99,7 @@ Json pair_json(const SceneComparison& scene, const PairComparison& pair) {
           {"position_rms", pair.position_rms_m},
           {"energy", number_or_null(pair.energy)},
           {"momentum", number_or_null(pair.momentum)},
+          {"angular_momentum", number_or_null(pair.angular_momentum)},
           {"first_divergence", divergence(pair.first_divergence)}};
 }
 

@@ -88,6 +88,8 @@ void limit_memory(double memory_mib) {
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
   dup2(errors.write, STDERR_FILENO);
+  // A signal shall end this process as itself, whatever handlers the parent has.
+  for (const int fatal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fatal, SIG_DFL);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   limit_memory(limits.memory_mib);

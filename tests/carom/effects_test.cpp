@@ -34,10 +34,10 @@ TEST(Effects, NotNamed_LeaveNothingBehind) {
 TEST(Effects, TheSceneChooses_ExactlyWhatItNames) {
   const auto chosen = [](const Scenario& scene) {
     return with_effects(scene, EffectSlots<2>{}, [](auto... effects) -> std::string {
-      const std::string names = (std::string() + ... +
-                                 (std::is_same_v<decltype(effects), Gravity<2>>      ? "g"
-                                  : std::is_same_v<decltype(effects), LinearDrag<2>> ? "l"
-                                                                                     : "q"));
+      std::string names = (std::string() + ... +
+                           (std::is_same_v<decltype(effects), Gravity<2>>      ? "g"
+                            : std::is_same_v<decltype(effects), LinearDrag<2>> ? "l"
+                                                                               : "q"));
       return names;
     });
   };

@@ -1,3 +1,4 @@
+#include <new>
 #include <vector>
 
 #include "tests/engines/still.h"
@@ -6,14 +7,16 @@ namespace carom::test {
 
 namespace {
 
-/// Takes memory without end.
+/// Takes more and more memory; where nothing stops it, it ends itself before the machine does.
 class Memory final : public StillSimulation {
  public:
   using StillSimulation::StillSimulation;
   void advance(double /*step_s*/, std::int64_t /*steps*/) override {
-    for (std::size_t bytes = std::size_t{1} << 20U;; bytes *= 2) {
+    constexpr std::size_t kEnough = std::size_t{1} << 30U;
+    for (std::size_t bytes = std::size_t{1} << 20U; bytes <= kEnough; bytes *= 2) {
       hoard_.emplace_back(bytes, 'x');
     }
+    throw std::bad_alloc();
   }
 
  private:

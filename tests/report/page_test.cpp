@@ -116,7 +116,7 @@ SceneComparison every_verdict() {
   crashed.verdict = Verdict::error;
   SceneComparison made = comparison(
       head_on, {pass, fail, run_of(*head_on, "box2d", "default", Verdict::shown, 0.3), unsupported, crashed});
-  made.pairs = {{0, 1, 0.02, 0.01, 0.01, std::nullopt, Divergence{0.5, {1}, Metric::energy}}};
+  made.pairs = {{0, 1, 0.02, 0.01, 0.01, std::nullopt, std::nullopt, Divergence{0.5, {1}, Metric::energy}}};
   return made;
 }
 
