@@ -23,11 +23,9 @@ class Box2dEngine final : public Engine {
         "Single precision: velocities after an impact are right to about 1e-7, positions to 1e-7 of the "
         "scene.",
         "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, "
-        "and an "
-        "oblique impact turns by the angle of that place. Only a shorter step helps.",
+        "and an oblique impact turns by the angle of that place. Only a shorter step helps.",
         "Gravity is added before a contact reflects the velocity, so each bounce under gravity gains energy: "
-        "a ball "
-        "dropped from 10 m at 1 ms rises to 11.45 m after 100 bounces.",
+        "a ball dropped from 10 m at 1 ms rises to 11.45 m after 100 bounces.",
         "Drag and gravity are integrated with order 1 in the step.",
         "No body moves farther than 2 length units in a step; the scene is scaled so that this is not met.",
     };

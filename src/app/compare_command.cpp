@@ -67,6 +67,7 @@ std::vector<Participant> participants(const Options& options, const EngineCatalo
     all.push_back({catalog.find(word.substr(0, at)), profile, {}});
   }
   std::vector<EngineSource> sources;
+  sources.reserve(all.size());
   for (const Participant& each : all) sources.push_back(each.source);
   std::vector<EngineInfo> infos = describe_engines(sources, limits, options.parallel);
   for (std::size_t i = 0; i < all.size(); ++i) all[i].info = std::move(infos[i]);

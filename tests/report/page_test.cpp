@@ -158,7 +158,8 @@ void parse_body(const std::string& page, pugi::xml_document& body) {
   ASSERT_NE(end, std::string::npos);
   const std::string text = page.substr(begin, end + 7 - begin);
   const pugi::xml_parse_result parsed = body.load_string(text.c_str(), pugi::parse_full);
-  ASSERT_TRUE(parsed) << parsed.description() << " at " << text.substr(parsed.offset, 80);
+  ASSERT_TRUE(parsed) << parsed.description() << " at "
+                      << text.substr(static_cast<std::size_t>(parsed.offset), 80);
 }
 
 /// The body's text as a reader sees it.

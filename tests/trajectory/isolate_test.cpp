@@ -18,14 +18,14 @@ ProcessOutcome run_one(const Job& job, const ProcessLimits& limits = {}) {
 }
 
 TEST(Isolation, HandsBackThePayloadWhole) {
-  const std::string megabytes(5'000'000, 'x');
+  std::string megabytes(5'000'000, 'x');
   const ProcessOutcome outcome = run_one([&] { return megabytes; });
   EXPECT_EQ(outcome.end, ProcessEnd::finished);
   EXPECT_TRUE(outcome.payload == megabytes);
 }
 
 TEST(Isolation, KeepsBytesAsTheyAre) {
-  const std::string bytes("a\0b\x06\n\x06", 6);
+  std::string bytes("a\0b\x06\n\x06", 6);
   EXPECT_EQ(run_one([&] { return bytes; }).payload, bytes);
 }
 
@@ -91,6 +91,7 @@ TEST(Isolation, OutputOnStdout_GoesNowhere) {
 
 TEST(Isolation, OneThatFails_LeavesTheOthersAlone) {
   std::vector<Job> jobs;
+  jobs.reserve(20);
   for (int i = 0; i < 20; ++i) {
     jobs.emplace_back([i]() -> std::string {
       if (i % 3 == 1) std::abort();
