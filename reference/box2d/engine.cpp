@@ -29,9 +29,12 @@ class Box2dEngine final : public Engine {
         "Drag and gravity are integrated with order 1 in the step.",
         "No body moves farther than 2 length units in a step; the scene is scaled so that this is not met.",
     };
+    const std::string own_law = "it resolves touching contacts by its own iteration of pairwise impulses";
     info.cannot = {
         {Feature::space, "Box2D is two-dimensional"},
         {Feature::tangential_restitution, "its friction law has no tangential rebound"},
+        {Feature::simultaneous, own_law},
+        {Feature::generalized_reflections, own_law},
         {Feature::slab, "the adapter makes walls only"},
         {Feature::barrier, "no rigid-body engine tunnels"},
         {Feature::events, "the adapter does not change balls while it runs"},

@@ -42,8 +42,11 @@ class BulletEngine final : public Engine {
         "Single precision: velocities after an impact are right to about 1e-7, positions to 1e-7 of the "
         "scene.");
 #endif
+    const std::string own_law = "it resolves touching contacts by its own iteration of pairwise impulses";
     info.cannot = {
         {Feature::tangential_restitution, "its friction law has no tangential rebound"},
+        {Feature::simultaneous, own_law},
+        {Feature::generalized_reflections, own_law},
         {Feature::slab, "the adapter makes walls only"},
         {Feature::barrier, "no rigid-body engine tunnels"},
         {Feature::events, "the adapter does not change balls while it runs"},

@@ -38,17 +38,19 @@ inline double initial_spin_radps(const Scenario& scene) {
   return scene.effects.spin ? spin_radps : 0.0;
 }
 
-/// How far a ball can fall along gravity before a wall stops it, m; without such a wall, as far as the scene
-/// lasts.
+/// How far a ball can fall along gravity before a level wall or the box stops it, m; without them, as far as
+/// the scene lasts: on a tilted wall it goes on down.
 inline double fall_m(const Scenario& scene, const Ball& ball) {
   const Vec3& gravity_mps2 = *scene.effects.gravity;
   const Vec3 down = gravity_mps2.normalized();
   double fall_m =
       ball.velocity.norm() * scene.duration_s + 0.5 * gravity_mps2.norm() * std::pow(scene.duration_s, 2);
+  constexpr double kLevel = 1.0 - 1e-9;  // a cosine: what is more level than rounding can tell
   for (const Wall& wall : scene.walls) {
-    const double slope = -wall.normal.dot(down);
-    if (slope > 0.0) fall_m = std::min(fall_m, (wall.normal.dot(ball.position) - wall.offset) / slope);
+    if (-wall.normal.dot(down) >= kLevel)
+      fall_m = std::min(fall_m, wall.normal.dot(ball.position) - wall.offset);
   }
+  if (scene.box) fall_m = std::min(fall_m, down.cwiseAbs().dot(scene.box->max - scene.box->min));
   return std::max(fall_m, 0.0);
 }
 

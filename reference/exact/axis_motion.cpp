@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "reference/exact/accelerated.h"
 #include "reference/exact/timeline.h"
 
 namespace carom::exact {
@@ -45,7 +46,7 @@ bool AxisMotion::starts_at_rest(Side side) const {
 void AxisMotion::follow() {
   while (true) {
     const Piece& now = pieces_.back();
-    const std::optional<Arrival> hit = next_arrival(now.state);
+    const std::optional<Hit> hit = next_arrival(now.state);
     if (!hit || now.start_s + hit->after_s > scene_.horizon_s) {
       cover(now.state, scene_.horizon_s - now.start_s);
       return;
@@ -59,38 +60,25 @@ void AxisMotion::follow() {
   }
 }
 
-/// The first moment s >= 0 at which the distance d >= 0 to a wall is covered, towards it, with v and a
-/// counted towards the wall:
-///
-///   v s + ½ a s² = d                             (1)
-///   s = 2 d / (v + √(v² + 2 a d))    for v > 0   (2)
-///   s = (√(v² + 2 a d) - v) / a      for v <= 0  (3)
-///
-/// Neither form subtracts what is nearly equal. The root is the speed of arrival; at 0 the ball turns at the
-/// wall, which is no impact. An overlap by rounding counts as d = 0.
-std::optional<AxisMotion::Arrival> AxisMotion::arrival(Side side, const AxisState& state) const {
+std::optional<AxisMotion::Hit> AxisMotion::arrival(Side side, const AxisState& state) const {
   if (side > 0 ? !scene_.high_m : !scene_.low_m) return std::nullopt;
   const double sign = side;
-  const Twofold d = std::max(Twofold(0.0), (wall_m(side) - state.position_m) * sign);
-  const Twofold v = state.velocity_mps * sign;
-  const double a = sign * scene_.acceleration_mps2;
-  const Twofold square = v * v + d * (2.0 * a);
-  if (square <= 0.0) return std::nullopt;
-  const Twofold speed = sqrt(square);
-  if (v > 0.0) return Arrival{side, d * 2.0 / (v + speed), speed};
-  if (a > 0.0) return Arrival{side, (speed - v) / a, speed};
-  return std::nullopt;
+  const Twofold distance_m = (wall_m(side) - state.position_m) * sign;
+  const auto first =
+      first_arrival(distance_m, state.velocity_mps * sign, Twofold(sign * scene_.acceleration_mps2));
+  if (!first) return std::nullopt;
+  return Hit{side, first->after_s, first->speed_mps};
 }
 
-std::optional<AxisMotion::Arrival> AxisMotion::next_arrival(const AxisState& state) const {
-  const std::optional<Arrival> low = arrival(-1, state);
-  const std::optional<Arrival> high = arrival(+1, state);
+std::optional<AxisMotion::Hit> AxisMotion::next_arrival(const AxisState& state) const {
+  const std::optional<Hit> low = arrival(-1, state);
+  const std::optional<Hit> high = arrival(+1, state);
   if (low && high) return low->after_s <= high->after_s ? low : high;
   return low ? low : high;
 }
 
 /// Ends the last piece at a wall and begins the next one there, exactly at the wall.
-void AxisMotion::bounce(const Arrival& hit) {
+void AxisMotion::bounce(const Hit& hit) {
   const Piece last = pieces_.back();
   cover(last.state, hit.after_s);
   AxisState state = flown(last.state, hit.after_s, scene_.acceleration_mps2);
@@ -103,7 +91,7 @@ void AxisMotion::bounce(const Arrival& hit) {
 /// After a bounce that left a wall at speed u, with g > 0 the acceleration towards the wall and the opposite
 /// wall out of reach, flight k lasts 2 u e^k / g, and all of them together
 ///
-///   R = Σ 2 u e^k / g = 2 u / (g (1 - e))        (4)
+///   R = Σ 2 u e^k / g = 2 u / (g (1 - e))        (1)
 ///
 /// A drop from h arrives after √(2h/g) at √(2gh), so u = e √(2gh) and the end is at √(2h/g) (1+e)/(1-e).
 bool AxisMotion::settles(Side side) {
@@ -123,7 +111,7 @@ bool AxisMotion::settles(Side side) {
 bool AxisMotion::repeats(Side side) {
   if (scene_.restitution < 1.0) return false;
   const std::size_t first = pieces_.size() - 1;
-  std::optional<Arrival> hit = next_arrival(pieces_.back().state);
+  std::optional<Hit> hit = next_arrival(pieces_.back().state);
   if (hit && hit->side != side) {
     bounce(*hit);
     hit = next_arrival(pieces_.back().state);

@@ -58,7 +58,7 @@ class AxisMotion {
     Twofold start_s;
     AxisState state;  ///< at the start
   };
-  struct Arrival {
+  struct Hit {
     Side side;
     Twofold after_s;
     Twofold speed_mps;  ///< towards the wall
@@ -75,9 +75,9 @@ class AxisMotion {
 
   void follow();
   bool starts_at_rest(Side side) const;
-  std::optional<Arrival> arrival(Side side, const AxisState& state) const;
-  std::optional<Arrival> next_arrival(const AxisState& state) const;
-  void bounce(const Arrival& hit);
+  std::optional<Hit> arrival(Side side, const AxisState& state) const;
+  std::optional<Hit> next_arrival(const AxisState& state) const;
+  void bounce(const Hit& hit);
   bool settles(Side side);
   bool repeats(Side side);
   void cover(const AxisState& from, const Twofold& time_s);

@@ -17,7 +17,8 @@ using exact::Attempt;
 using exact::Motion;
 
 /// The families in the order in which they are tried.
-constexpr std::array kFamilies = {exact::try_separable, exact::try_drag, exact::try_line, exact::try_pair};
+constexpr std::array kFamilies = {exact::try_rough_wall, exact::try_separable, exact::try_drag,
+                                  exact::try_magnus,     exact::try_line,      exact::try_pair};
 
 /// The first family that solves the scene; or else the first reason that one gives.
 Attempt solve(const Scenario& scenario) {
@@ -46,8 +47,8 @@ class ClosedFormSimulation final : public Simulation {
   }
 
   void snapshot(std::span<BallState> balls) const override {
-    motion_->evaluate(time_s_, balls);
     for (std::size_t i = 0; i < balls.size(); ++i) balls[i].spin = scenario_.balls[i].spin;
+    motion_->evaluate(time_s_, balls);
   }
 
   Tally tally() const override { return motion_->tally(time_s_); }
@@ -66,12 +67,14 @@ class ClosedFormEngine final : public Engine {
  public:
   EngineInfo info() const override {
     const std::string unsolved = "no family of closed forms here has it";
+    const std::string pairwise = "its impacts are of one pair at a time";
     return {.name = "closed-form",
             .about = "Exact solutions, evaluated to the last digit of a double, for scenes that have one.",
             .version = "1",
             .precision = "float64",
             .profiles = {{"faithful", "There is nothing to set."}},
-            .cannot = {{Feature::magnus, unsolved},
+            .cannot = {{Feature::simultaneous, pairwise},
+                       {Feature::generalized_reflections, pairwise},
                        {Feature::slab, unsolved},
                        {Feature::barrier, unsolved},
                        {Feature::events, unsolved}},

@@ -217,7 +217,7 @@ bool reaches(const Wall& wall, const Ball& ball, const Flight& flight, double en
 }  // namespace
 
 Attempt try_drag(const Scenario& scenario) {
-  if (!has_drag(scenario)) return {};
+  if (!has_drag(scenario) || has_magnus(scenario)) return {};
   if (scenario.effects.collisions && scenario.balls.size() > 1) {
     return {nullptr, "drag, and several balls that can meet"};
   }

@@ -230,7 +230,8 @@ Attempt try_line(const Scenario& scenario) {
   const bool accelerated = std::any_of(scenario.balls.begin(), scenario.balls.end(), [&](const Ball& ball) {
     return !acceleration_of(ball, scenario.effects).isZero(0.0);
   });
-  if (scenario.balls.empty() || accelerated || has_drag(scenario) || !scenario.effects.collisions) return {};
+  if (scenario.balls.empty() || !scenario.effects.collisions) return {};
+  if (accelerated || has_drag(scenario) || has_magnus(scenario)) return {};
   const std::optional<Line> line = line_of(scenario);
   if (!line) return {};
   Chain chain(scenario, bodies_on(*line, scenario));

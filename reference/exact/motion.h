@@ -10,8 +10,7 @@
 
 namespace carom::exact {
 
-/// The motion of every ball of a scene in closed form. Spins are no part of it: every family is frictionless
-/// wherever surfaces touch, so that spins keep their initial values.
+/// The motion of every ball of a scene in closed form.
 class Motion {
  public:
   Motion() = default;
@@ -21,8 +20,9 @@ class Motion {
 
   virtual std::string_view family() const = 0;
 
-  /// Positions and velocities at a moment; at the moment of an impact, those after it. @pre 0 <= time_s, and
-  /// no later than the scene's duration but for its rounding.
+  /// Positions and velocities at a moment; at the moment of an impact, those after it. The spins come in as
+  /// they were at the start, and stay so in families where nothing changes them. @pre 0 <= time_s, and no
+  /// later than the scene's duration but for its rounding.
   virtual void evaluate(const Twofold& time_s, std::span<BallState> balls) const = 0;
 
   /// What happened up to and including a moment.
@@ -45,7 +45,11 @@ Attempt try_separable(const Scenario& scenario);
 Attempt try_drag(const Scenario& scenario);
 /// Any number of balls on one line, with walls across it.
 Attempt try_line(const Scenario& scenario);
-/// Two balls that meet once.
+/// Flight under the Magnus force that meets nothing.
+Attempt try_magnus(const Scenario& scenario);
+/// Balls by themselves, each with one wall that it bounces on, slides on and rolls on with friction.
+Attempt try_rough_wall(const Scenario& scenario);
+/// Two balls that meet once, smooth or rough.
 Attempt try_pair(const Scenario& scenario);
 
 }  // namespace carom::exact

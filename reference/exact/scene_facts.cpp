@@ -11,6 +11,10 @@ bool has_drag(const Scenario& scenario) {
   return scenario.effects.drag && scenario.effects.drag->coefficient > 0.0;
 }
 
+bool has_magnus(const Scenario& scenario) {
+  return scenario.effects.magnus.value_or(0.0) != 0.0;
+}
+
 bool is_immovable(const Ball& ball) {
   return std::isinf(ball.mass);
 }

@@ -14,6 +14,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Whether a drag force acts at all.
 bool has_drag(const Scenario& scenario);
 
+/// Whether a Magnus force acts on balls that spin.
+bool has_magnus(const Scenario& scenario);
+
 bool is_immovable(const Ball& ball);
 
 /// The constant part of a ball's acceleration, m/s². Gravity does not move an immovable ball: it keeps the

@@ -181,7 +181,7 @@ std::string refusal(const Scenario& scenario, std::size_t index, const Axes& axe
 }  // namespace
 
 Attempt try_separable(const Scenario& scenario) {
-  if (has_drag(scenario)) return {};
+  if (has_drag(scenario) || has_magnus(scenario)) return {};
   std::vector<Axes> balls;
   balls.reserve(scenario.balls.size());
   const double touch = touch_m(scenario);

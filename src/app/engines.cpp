@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "carom/carom_engine.h"
 #include "core/error.h"
@@ -21,6 +22,11 @@ EngineSource module_source(const std::string& name, const fs::path& file) {
   return {name, [file]() -> const Engine& { return open_engine_module(file); }};
 }
 
+EngineSource carom_source(const std::string& name) {
+  const std::shared_ptr<const Engine> engine = make_carom_engine(name);
+  return {name, [engine]() -> const Engine& { return *engine; }};
+}
+
 std::vector<fs::path> modules_in(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw InputError(fmt::format("{}: no such folder of engine modules", folder.string()));
@@ -36,10 +42,7 @@ std::vector<fs::path> modules_in(const fs::path& folder) {
 }  // namespace
 
 EngineCatalog::EngineCatalog(const fs::path& modules, const std::vector<std::string>& extra) {
-  sources_.push_back({"carom", []() -> const Engine& {
-                        static const std::unique_ptr<Engine> engine = make_carom_engine();
-                        return *engine;
-                      }});
+  sources_.push_back(carom_source("carom"));
   for (const KnownEngine& known : kKnownEngines) {
     const std::string name(known.name);
     const fs::path file = modules / (name + ".so");
@@ -66,21 +69,28 @@ std::vector<std::string> EngineCatalog::names() const {
   std::vector<std::string> names;
   for (const EngineSource& source : sources_) names.push_back(source.name);
   for (const MissingEngine& engine : missing_) names.push_back(engine.name);
+  for (std::string& variant : carom_variant_names()) names.push_back(std::move(variant));
   return names;
 }
 
-const EngineSource& EngineCatalog::find(const std::string& name) const {
+EngineSource EngineCatalog::find(const std::string& name) const {
   for (const EngineSource& source : sources_) {
     if (source.name == name) return source;
   }
+  const std::vector<std::string> variants = carom_variant_names();
+  if (std::find(variants.begin(), variants.end(), name) != variants.end()) return carom_source(name);
   for (const MissingEngine& engine : missing_) {
     if (engine.name == name) {
       throw InputError(fmt::format("engine {} is not built: {} is not installed", name, engine.package));
     }
   }
+  if (name.starts_with("carom:")) {
+    throw InputError(fmt::format("no variant \"{}\"; allowed: {}", name, fmt::join(variants, ", ")));
+  }
   std::vector<std::string> built;
   for (const EngineSource& source : sources_) built.push_back(source.name);
-  throw InputError(fmt::format("no engine \"{}\"; allowed: {}", name, fmt::join(built, ", ")));
+  throw InputError(fmt::format("no engine \"{}\"; allowed: {}, and carom's variants (carom list engines)",
+                               name, fmt::join(built, ", ")));
 }
 
 EngineSource closed_form_source() {

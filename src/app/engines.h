@@ -23,7 +23,8 @@ class EngineCatalog {
   /// Names that a scene's gate may use, built or not.
   std::vector<std::string> names() const;
 
-  const EngineSource& find(const std::string& name) const;  ///< @throws InputError with what there is
+  /// An engine, or a variant of the hand-written one. @throws InputError with what there is
+  EngineSource find(const std::string& name) const;
 
  private:
   std::vector<EngineSource> sources_;

@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/engines.h"
 #include "app/layout.h"
+#include "carom/carom_engine.h"
 #include "scenario/catalog.h"
 #include "scenario/features.h"
 #include "scenario/parse.h"
@@ -62,6 +63,7 @@ std::vector<EngineInfo> described(const Options& options, const EngineCatalog& c
 void list_engines(const Options& options, const EngineCatalog& catalog) {
   fmt::print("Engines (--engine NAME or NAME@PROFILE):\n");
   for (const EngineInfo& info : described(options, catalog)) list_engine(info);
+  print_wrapped("  variants     ", fmt::format("{}", fmt::join(carom_variant_names(), ", ")));
   for (const MissingEngine& engine : catalog.missing()) {
     fmt::print("  {:<12} is not built: {} is not installed\n", engine.name, engine.package);
   }

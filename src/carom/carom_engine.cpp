@@ -1,52 +1,92 @@
 #include "carom/carom_engine.h"
 
+#include <fmt/format.h>
+
+#include <map>
+
+#include "carom/broad_phase/list.h"
 #include "carom/compose.h"
-#include "carom/laws/frictionless.h"
+#include "carom/evolvers/list.h"
 
 namespace carom {
 
 namespace {
 
+std::map<std::string, Variant> all_variants() {
+  std::map<std::string, Variant> variants = {{"carom", {}}};
+  for (const int dimension : {2, 3}) {
+    for (const std::string_view broad_phase : broad_phase_names(dimension)) {
+      variants[fmt::format("carom:{}", broad_phase)] = {"", std::string(broad_phase)};
+      for (const Evolver& evolver : all_evolvers()) {
+        variants[fmt::format("carom:{}", evolver.name)] = {std::string(evolver.name), ""};
+        if (!evolver.takes_broad_phase) continue;
+        variants[fmt::format("carom:{}:{}", evolver.name, broad_phase)] = {std::string(evolver.name),
+                                                                           std::string(broad_phase)};
+      }
+    }
+  }
+  return variants;
+}
+
+std::string about(const Variant& variant) {
+  if (!variant.evolver.empty()) {
+    for (const Evolver& evolver : all_evolvers()) {
+      if (evolver.name == variant.evolver) return fmt::format("The hand-written engine: {}", evolver.about);
+    }
+  }
+  return "The hand-written engine: the most accurate evolver that the scene allows";
+}
+
 class CaromEngine final : public Engine {
  public:
-  EngineInfo info() const override { return carom_engine_info(); }
+  CaromEngine(std::string name, Variant variant) : name_(std::move(name)), variant_(std::move(variant)) {}
+
+  EngineInfo info() const override {
+    EngineInfo info;
+    info.name = name_;
+    info.about = about(variant_);
+    info.version = CAROM_VERSION;
+    info.precision = "float64";
+    info.profiles = {{"faithful", "As a user would run it."}};
+    info.limits = {
+        "Flight under drag or Magnus force is of second order in the step; all other flight is exact but for "
+        "rounding.",
+        "Impacts at one moment are resolved one after the other, so what touching balls do depends on their "
+        "order, unless the scene names a law for several contacts at once.",
+        "Where balls still chatter after 16 flights in a step, its rest is taken in one piece, of first "
+        "order: "
+        "piles that form, and inelastic collapse.",
+        "Friction between balls that lie on each other follows the contacts' normals once a step.",
+    };
+    info.cannot = {{Feature::events, "carom takes no events yet"}};
+    return info;
+  }
+
+  std::string refuses(const Scenario& scenario, std::string_view /*profile*/) const override {
+    return refusal(scenario, variant_);
+  }
 
   std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view /*profile*/) const override {
-    return compose<Frictionless>(scenario);
+    return compose(scenario, variant_);
   }
+
+ private:
+  std::string name_;
+  Variant variant_;
 };
 
 }  // namespace
 
-EngineInfo carom_engine_info() {
-  EngineInfo info;
-  info.name = "carom";
-  info.about = "The hand-written engine: fixed steps, every impact at its time within the step";
-  info.version = CAROM_VERSION;
-  info.precision = "float64";
-  info.profiles = {{"faithful", "As a user would run it."}};
-  info.limits = {
-      "Flight under drag is of second order in the step; flight without it is exact but for rounding.",
-      "Impacts at one moment are resolved one after the other, so what touching balls do depends on their "
-      "order.",
-      "Piles settle slowly: one of 20 balls costs milliseconds a step, gains up to 1e-6 of its energy and "
-      "misses a few hundredths in the account of the floor's push while it forms; one of 50 may not end in "
-      "time.",
-  };
-  info.cannot = {
-      {Feature::spin, "carom's balls do not rotate yet"},
-      {Feature::magnus, "needs spin, and carom's balls do not rotate yet"},
-      {Feature::friction, "carom has no friction yet"},
-      {Feature::tangential_restitution, "carom has no friction yet"},
-      {Feature::slab, "carom has no slabs yet"},
-      {Feature::barrier, "carom has no quantum barriers yet"},
-      {Feature::events, "carom takes no events yet"},
-  };
-  return info;
+std::vector<std::string> carom_variant_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, variant] : all_variants()) {
+    if (name != "carom") names.push_back(name);
+  }
+  return names;
 }
 
-std::unique_ptr<Engine> make_carom_engine() {
-  return std::make_unique<CaromEngine>();
+std::unique_ptr<Engine> make_carom_engine(const std::string& name) {
+  return std::make_unique<CaromEngine>(name, all_variants().at(name));
 }
 
 }  // namespace carom

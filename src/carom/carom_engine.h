@@ -1,15 +1,18 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "engine/engine.h"
 
 namespace carom {
 
-/// What the hand-written engine is and can do.
-EngineInfo carom_engine_info();
+/// The names under which the hand-written engine runs with its evolver or its broad phase, or both, chosen by
+/// name and not for the scene: "carom:step", "carom:quadtree", "carom:toi:brute-force".
+std::vector<std::string> carom_variant_names();
 
-/// The hand-written engine.
-std::unique_ptr<Engine> make_carom_engine();
+/// The hand-written engine. @param name  "carom", or one of carom_variant_names()
+std::unique_ptr<Engine> make_carom_engine(const std::string& name = "carom");
 
 }  // namespace carom

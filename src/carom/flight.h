@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <tuple>
 
+#include "carom/effects/kind.h"
 #include "carom/world.h"
 
 namespace carom {
@@ -17,69 +19,127 @@ struct Motion {
   Motion after(double t) const { return {x + t * (v + (0.5 * t) * a), v + t * a, a}; }
 };
 
-/// Gives every ball, for one stretch of flight, the constant acceleration that stands for the engaged
-/// effects.
+/// Gives every ball, for one stretch of flight, the constant acceleration that stands for the effects that
+/// the scene engages. As an evolver sees it: one call for all balls a step, and one for each ball that was
+/// hit.
+template <int Dim>
+class Flight {
+ public:
+  Flight() = default;
+  Flight(const Flight&) = delete;
+  Flight& operator=(const Flight&) = delete;
+  virtual ~Flight() = default;
+
+  /// The accelerations of all balls for the next `tau_s` seconds.
+  virtual void accelerations(const World<Dim>& world, double tau_s, VectorColumn<Dim>& a) const = 0;
+
+  /// The acceleration of a ball for the next `tau_s` seconds.
+  virtual Vec<Dim> acceleration(const World<Dim>& world, std::size_t ball, double tau_s) const = 0;
+
+  /// By how much less than 1/m a force accelerates the ball over `tau_s`, because its own motion is damped.
+  virtual double yield(const World<Dim>& world, std::size_t ball, double tau_s) const = 0;
+
+  /// Whether the parabolas are the exact flights, whatever their length.
+  virtual bool exact() const = 0;
+};
+
+/// The flight with exactly the effects that the scene engages; null where it engages none, and balls fly
+/// straight on.
+template <int Dim>
+std::unique_ptr<Flight<Dim>> make_flight(const Scenario& scene);
+
+/// A flight composed of effects.
 ///
 /// For accelerations that do not depend on the velocity (gravity) the parabola is exact. For damping at rate
-/// λ the equation dv/dt = a₀ - λ(v) v is taken by the implicit midpoint rule over the stretch τ,
-///   a = a₀ - λ(v_m) v_m,  v_m = v + ½ τ a,                                            (1)
-/// solved for a with λ held at a predicted midpoint:
-///   a = (a₀ - λ v) / (1 + ½ λ τ).                                                     (2)
-/// It is of second order in τ and stable for every λτ: for a₀ = 0 the speed after τ is v (1-½λτ)/(1+½λτ).
-/// Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", §IV.3 (A-stability).
+/// λ and turning at rate Ω the equation dv/dt = a₀ - λ(v) v + Ω × v is taken by the implicit midpoint rule
+/// over the stretch τ,
+///   a = a₀ - λ(v_m) v_m + Ω × v_m,  v_m = v + ½ τ a,                                  (1)
+/// solved for a with λ held at a predicted midpoint: with α = 1 + ½ λ τ and β = ½ τ Ω,
+///   (α - β×) a = b,  b = a₀ - λ v + Ω × v,
+///   a = (α b + β × b + β (β·b)/α) / (α² + β²).                                        (2)
+/// It is of second order in τ and stable for every λτ: for a₀ = Ω = 0 the speed after τ is
+/// v (1-½λτ)/(1+½λτ), and for a₀ = λ = 0 it stays as it is.
+/// Source: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration" (2006), §II.1.3, and for the
+/// stability E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", §IV.3.
 template <int Dim, class... Effects>
-class FlightModel {
+class FlightModel final : public Flight<Dim> {
  public:
-  /// No effect: no acceleration is stored, added, or even zero.
-  static constexpr bool kAccelerates = sizeof...(Effects) > 0;
-  static constexpr bool kDamps = (false || ... || Effects::kDamps);
+  static constexpr bool kDamps = (false || ... || (Effects::kKind == EffectKind::damping));
+  static constexpr bool kTurns = (false || ... || (Effects::kKind == EffectKind::turning));
 
   explicit FlightModel(Effects... effects) : effects_(effects...) {}
 
-  /// The acceleration of a ball for the next `tau_s` seconds.
-  Vec<Dim> acceleration(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity,
-                        double tau_s) const {
-    Vec<Dim> a = Vec<Dim>::Zero();
-    std::apply([&](const Effects&... effect) { (add_acceleration(effect, world, ball, a), ...); }, effects_);
-    if constexpr (kDamps) {
+  void accelerations(const World<Dim>& world, double tau_s, VectorColumn<Dim>& a) const override {
+    for (std::size_t ball = 0; ball < world.size(); ++ball) a.set(ball, acceleration(world, ball, tau_s));
+  }
+
+  Vec<Dim> acceleration(const World<Dim>& world, std::size_t ball, double tau_s) const override {
+    Vec<Dim> a = field(world, ball);
+    if constexpr (kDamps || kTurns) {
+      const Vec<Dim> velocity = world.velocity[ball];
+      const Spin<Dim> omega = turning_rate(world, ball);
       const double rate = midpoint_rate(world, ball, velocity, a, tau_s);
-      a = (a - rate * velocity) / (1.0 + 0.5 * rate * tau_s);
+      if constexpr (kTurns) a += turned<Dim>(omega, velocity);
+      a = responding(a - rate * velocity, 1.0 + 0.5 * rate * tau_s, (0.5 * tau_s) * omega);
     }
     return a;
   }
 
-  /// By how much less than 1/m a force accelerates the ball over `tau_s`, because its own motion is damped: a
-  /// force N beside the effects turns (2) into a = (a₀ + N/m - λ v)/(1 + ½ λ τ), and this is 1/(1 + ½ λ τ).
-  double yield(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity, double tau_s) const {
+  /// A force N beside the effects adds N/m to b in (2), and this is 1/α. What Ω turns of it is left out.
+  double yield(const World<Dim>& world, std::size_t ball, double tau_s) const override {
     if constexpr (!kDamps) return 1.0;
-    Vec<Dim> a = Vec<Dim>::Zero();
-    std::apply([&](const Effects&... effect) { (add_acceleration(effect, world, ball, a), ...); }, effects_);
-    return 1.0 / (1.0 + 0.5 * tau_s * midpoint_rate(world, ball, velocity, a, tau_s));
+    const double rate = midpoint_rate(world, ball, world.velocity[ball], field(world, ball), tau_s);
+    return 1.0 / (1.0 + 0.5 * tau_s * rate);
   }
+
+  bool exact() const override { return !kDamps && !kTurns; }
 
  private:
+  /// a of (2).
+  static Vec<Dim> responding(const Vec<Dim>& b, double alpha, const Spin<Dim>& beta) {
+    if constexpr (!kTurns) {
+      return b / alpha;
+    } else {
+      Vec<Dim> sum = alpha * b + turned<Dim>(beta, b);
+      if constexpr (Dim == 3) sum += (beta.dot(b) / alpha) * beta;
+      return sum / (alpha * alpha + beta.squaredNorm());
+    }
+  }
+
   /// λ at the midpoint that λ at the start predicts; with it (2) is of second order.
-  double midpoint_rate(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity, const Vec<Dim>& a,
-                       double tau_s) const {
-    const auto rate_at = [&](const Vec<Dim>& at) {
-      double rate = 0.0;
-      std::apply([&](const Effects&... effect) { (add_rate(effect, world, ball, at, rate), ...); }, effects_);
-      return rate;
+  double midpoint_rate(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity,
+                       const Vec<Dim>& field, double tau_s) const {
+    if constexpr (!kDamps) return 0.0;
+    const double first = damping_rate(world, ball, velocity);
+    const Vec<Dim> change = (field - first * velocity) / (1.0 + 0.5 * first * tau_s);
+    return damping_rate(world, ball, velocity + (0.5 * tau_s) * change);
+  }
+
+  Vec<Dim> field(const World<Dim>& world, std::size_t ball) const {
+    Vec<Dim> a = Vec<Dim>::Zero();
+    const auto add = [&](const auto& effect) {
+      if constexpr (effect.kKind == EffectKind::field) a += effect.acceleration(world, ball);
     };
-    const double first = rate_at(velocity);
-    const Vec<Dim> change = (a - first * velocity) / (1.0 + 0.5 * first * tau_s);
-    return rate_at(velocity + (0.5 * tau_s) * change);
+    std::apply([&](const Effects&... effect) { (add(effect), ...); }, effects_);
+    return a;
   }
 
-  template <class Effect>
-  static void add_acceleration(const Effect& effect, const World<Dim>& world, std::size_t ball, Vec<Dim>& a) {
-    if constexpr (!Effect::kDamps) a += effect.acceleration(world, ball);
+  double damping_rate(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity) const {
+    double rate = 0.0;
+    const auto add = [&](const auto& effect) {
+      if constexpr (effect.kKind == EffectKind::damping) rate += effect.damping_rate(world, ball, velocity);
+    };
+    std::apply([&](const Effects&... effect) { (add(effect), ...); }, effects_);
+    return rate;
   }
 
-  template <class Effect>
-  static void add_rate(const Effect& effect, const World<Dim>& world, std::size_t ball, const Vec<Dim>& at,
-                       double& rate) {
-    if constexpr (Effect::kDamps) rate += effect.damping_rate(world, ball, at);
+  Spin<Dim> turning_rate(const World<Dim>& world, std::size_t ball) const {
+    Spin<Dim> rate = Spin<Dim>::Zero();
+    const auto add = [&](const auto& effect) {
+      if constexpr (effect.kKind == EffectKind::turning) rate += effect.turning_rate(world, ball);
+    };
+    std::apply([&](const Effects&... effect) { (add(effect), ...); }, effects_);
+    return rate;
   }
 
   std::tuple<Effects...> effects_;

@@ -30,6 +30,39 @@ Vec3 widened(const Vec<Dim>& v) {
   return wide;
 }
 
+/// A spin of a 2D scene is its z-component.
+template <int Dim>
+Vec<Dim == 2 ? 1 : 3> flattened_spin(const Vec3& spin) {
+  return spin.tail < Dim == 2 ? 1 : 3 > ();
+}
+
+template <int Dim>
+Vec3 widened_spin(const Vec<Dim == 2 ? 1 : 3>& spin) {
+  Vec3 wide = Vec3::Zero();
+  wide.tail<Dim == 2 ? 1 : 3>() = spin;
+  return wide;
+}
+
+/// What rotation adds to the velocity of a point at `arm` from the axis: spin × arm.
+template <int Dim>
+Vec<Dim> turned(const Vec<Dim == 2 ? 1 : 3>& spin, const Vec<Dim>& arm) {
+  if constexpr (Dim == 2) {
+    return spin[0] * Vec<2>(-arm[1], arm[0]);
+  } else {
+    return spin.cross(arm);
+  }
+}
+
+/// The moment arm × force, along z alone in 2D.
+template <int Dim>
+Vec<Dim == 2 ? 1 : 3> moment(const Vec<Dim>& arm, const Vec<Dim>& force) {
+  if constexpr (Dim == 2) {
+    return Vec<1>(arm[0] * force[1] - arm[1] * force[0]);
+  } else {
+    return arm.cross(force);
+  }
+}
+
 /// One vector per ball, stored axis by axis so that loops over all balls run over plain arrays.
 template <int Dim>
 class VectorColumn {
@@ -55,29 +88,51 @@ class VectorColumn {
   std::array<std::vector<double>, Dim> axes_;
 };
 
-/// The balls of one simulation as a structure of arrays. SI units, the scene's frame.
+/// Components of a spin: along z alone in 2D.
+template <int Dim>
+inline constexpr int kSpinAxes = Dim == 2 ? 1 : 3;
+
+template <int Dim>
+using Spin = Vec<kSpinAxes<Dim>>;
+
+/// The balls of one simulation as a structure of arrays. SI units, the scene's frame. The columns of the spin
+/// are empty in a scene without it: what is not asked for takes no byte.
 template <int Dim>
 struct World {
-  VectorColumn<Dim> position;        ///< m
-  VectorColumn<Dim> velocity;        ///< m/s
-  std::vector<double> radius;        ///< m
-  std::vector<double> inverse_mass;  ///< 1/kg, 0 for an immovable ball
+  VectorColumn<Dim> position;           ///< m
+  VectorColumn<Dim> velocity;           ///< m/s
+  std::vector<double> radius;           ///< m
+  std::vector<double> inverse_mass;     ///< 1/kg, 0 for an immovable ball
+  VectorColumn<kSpinAxes<Dim>> spin;    ///< rad/s; empty without effects.spin
+  std::vector<double> inverse_inertia;  ///< 1/(kg m²), 0 for an immovable ball; empty without effects.spin
 
-  explicit World(const std::vector<Ball>& balls) : position(balls.size()), velocity(balls.size()) {
+  explicit World(const std::vector<Ball>& balls, bool spins = false)
+      : position(balls.size()), velocity(balls.size()), spin(spins ? balls.size() : 0) {
+    radius.reserve(balls.size());
+    inverse_mass.reserve(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i) {
       position.set(i, flattened<Dim>(balls[i].position));
       velocity.set(i, flattened<Dim>(balls[i].velocity));
       radius.push_back(balls[i].radius);
       inverse_mass.push_back(1.0 / balls[i].mass);
     }
+    if (!spins) return;
+    inverse_inertia.reserve(balls.size());
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      spin.set(i, flattened_spin<Dim>(balls[i].spin));
+      inverse_inertia.push_back(inverse_mass[i] / (balls[i].inertia * radius[i] * radius[i]));
+    }
   }
 
   std::size_t size() const { return radius.size(); }
+  bool spins() const { return !inverse_inertia.empty(); }
 
   void snapshot(std::span<BallState> balls) const {
     for (std::size_t i = 0; i < size(); ++i) {
       balls[i] = {widened<Dim>(position[i]), widened<Dim>(velocity[i]), Vec3::Zero()};
     }
+    if (!spins()) return;
+    for (std::size_t i = 0; i < size(); ++i) balls[i].spin = widened_spin<Dim>(spin[i]);
   }
 };
 

@@ -175,8 +175,9 @@ class Comparer {
 
   double momentum_error(const Conserved& now, const Run& run, std::size_t frame) const {
     const Tally& tally = run.trajectory.tally(frame);
+    // What these take from the momentum depends on the whole path.
     const bool quadratic = scene_.effects.drag && scene_.effects.drag->kind == Drag::Kind::quadratic;
-    if (quadratic || !tally.external_known || !scene_.events.empty()) {
+    if (quadratic || scene_.effects.magnus || !tally.external_known || !scene_.events.empty()) {
       if (!truth_known_at(frame)) return kNotKnown;
       const Vec3 off =
           nearest(frame, [&](const Conserved& truth) -> Vec3 { return now.momentum_Ns - truth.momentum_Ns; });
@@ -286,10 +287,14 @@ class Comparer {
         for (const Wall& wall : scene_.walls) {
           if (wall.normal.dot(balls[i].position) < wall.offset) outside[i] = true;
         }
+        for (const Slab& slab : scene_.slabs) {
+          const auto side = [&slab](const Vec3& x) { return slab.normal.dot(x) > slab.offset; };
+          if (side(balls[i].position) != side(scene_.balls[i].position)) outside[i] = true;
+        }
       }
     }
     result.metrics[Metric::penetration] = deepest;
-    if (!scene_.walls.empty()) {
+    if (!scene_.walls.empty() || !scene_.slabs.empty()) {
       result.metrics[Metric::escaped] = static_cast<double>(std::count(outside.begin(), outside.end(), true));
     }
   }

@@ -109,7 +109,7 @@ std::string unsupported_reason(const Engine& engine, const Scenario& scenario, s
 
 /// The symbol by which a loadable engine module hands out its engine (see modules.h). Its number goes up with
 /// every change of this interface, so that a module of an older build is refused and does not crash.
-#define CAROM_ENGINE_SYMBOL carom_engine_1
+#define CAROM_ENGINE_SYMBOL carom_engine_2
 using EngineFactory = Engine* (*)();
 
 }  // namespace carom

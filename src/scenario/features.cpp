@@ -38,6 +38,10 @@ bool requires_feature(const Scenario& s, Feature feature) {
     case Feature::tangential_restitution:
       return any_contact(
           s, [](const Contact& c) { return c.friction > 0.0 && c.tangential_restitution != 0.0; });
+    case Feature::simultaneous:
+      return s.multi_contact == MultiContact::simultaneous;
+    case Feature::generalized_reflections:
+      return s.multi_contact == MultiContact::generalized_reflections;
     case Feature::immovable:
       return std::any_of(s.balls.begin(), s.balls.end(),
                          [](const Ball& ball) { return std::isinf(ball.mass); });
@@ -67,6 +71,9 @@ const std::vector<FeatureName>& all_features() {
       {Feature::magnus, "magnus", "F = s ω × v"},
       {Feature::friction, "friction", "Coulomb friction at impacts"},
       {Feature::tangential_restitution, "tangential_restitution", "β0 of the three-parameter impact law"},
+      {Feature::simultaneous, "law.simultaneous", "touching balls push each other all at once"},
+      {Feature::generalized_reflections, "law.generalized-reflections",
+       "an impact travels through touching balls, contact by contact"},
       {Feature::immovable, "immovable", "balls of infinite mass"},
       {Feature::slab, "slab", "a solid sheet of finite thickness"},
       {Feature::barrier, "barrier", "a quantum barrier"},

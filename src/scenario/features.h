@@ -21,9 +21,11 @@ enum class Feature {
   quadratic_drag,
   spin,
   magnus,
-  friction,                ///< μ > 0 somewhere
-  tangential_restitution,  ///< β0 != 0 where μ > 0
-  immovable,               ///< a ball of infinite mass
+  friction,                 ///< μ > 0 somewhere
+  tangential_restitution,   ///< β0 != 0 where μ > 0
+  simultaneous,             ///< contact.law = "simultaneous"
+  generalized_reflections,  ///< contact.law = "generalized-reflections"
+  immovable,                ///< a ball of infinite mass
   slab,
   barrier,
   events,

@@ -121,29 +121,57 @@ void place_line(const Generator& g, const Scenario& scene, std::vector<Ball>& ba
   }
 }
 
-/// How many balls along each axis: the smallest cubic block that holds them, or as many as the box takes.
-Eigen::Vector3i lattice_shape(const Generator& g, const Scenario& scene, double pitch) {
-  Eigen::Vector3i shape(1, 1, 1);
+/// A lattice as a rectangular grid of sites, in units of the distance between nearest neighbours: all of the
+/// sites, or every other one, like the black fields of a chessboard (those with an even sum of indices).
+struct Lattice {
+  Vec3 spacing = Vec3::Ones();
+  bool chessboard = false;
+  Eigen::Vector3i growth = Eigen::Vector3i::Ones();  ///< of a block without a box, in sites
+
+  bool has(int x, int y, int z) const { return !chessboard || (x + y + z) % 2 == 0; }
+
+  /// How many of the sites of a block are taken; the first one, in the corner, always is.
+  double count_in(const Eigen::Vector3i& shape) const {
+    const double sites = shape.cast<double>().prod();
+    return chessboard ? std::ceil(0.5 * sites) : sites;
+  }
+};
+
+/// The closest packings on a chessboard. Plane: rows √3/2 apart, each shifted by half a distance against the
+/// one below, so (±1, ±1) is at √((1/2)² + (√3/2)²) = 1, as (±2, 0) is. Space: corners and face centres of
+/// cubes with the edge √2, so the sites are 1/√2 apart and (±1, ±1, 0) is at √(1/2 + 1/2) = 1.
+Lattice lattice_of(const Generator& g, int dimension) {
+  if (g.arrangement == Generator::Arrangement::cubic) return {};
+  if (dimension == 3) return {Vec3::Constant(std::sqrt(0.5)), true};
+  return {Vec3(0.5, 0.5 * std::numbers::sqrt3, 1.0), true, Eigen::Vector3i(2, 1, 1)};
+}
+
+/// How many sites along each axis: the smallest block that holds the balls, or as many as the box takes when
+/// the first and the last site are half a pitch from its walls.
+Eigen::Vector3i lattice_shape(const Generator& g, const Scenario& scene, const Lattice& lattice,
+                              double pitch) {
+  Eigen::Vector3i shape = lattice.growth;
   if (scene.box) {
     for (int axis = 0; axis < scene.dimension; ++axis) {
       const double extent = scene.box->max[axis] - scene.box->min[axis];
-      shape[axis] = static_cast<int>(std::clamp(std::floor(extent / pitch), 0.0, 1e6));
+      const double spacing = lattice.spacing[axis];
+      const double between = std::floor(extent / (spacing * pitch) - 1.0 / spacing);
+      shape[axis] = static_cast<int>(std::clamp(between + 1.0, 0.0, 1e6));
     }
     return shape;
   }
-  while (static_cast<double>(shape[0]) * shape[1] * shape[2] < static_cast<double>(g.count)) {
-    for (int axis = 0; axis < scene.dimension; ++axis) ++shape[axis];
+  while (lattice.count_in(shape) < static_cast<double>(g.count)) {
+    for (int axis = 0; axis < scene.dimension; ++axis) shape[axis] += lattice.growth[axis];
   }
   return shape;
 }
 
-/// The widest pitch at which the box still takes all the balls; each ball has a cell of one pitch for itself.
-double widest_pitch(const Generator& g, const Scenario& scene, double least) {
+/// The widest pitch at which the box still takes all the balls; each is half a pitch or more from the walls.
+double widest_pitch(const Generator& g, const Scenario& scene, const Lattice& lattice, double least) {
   double low = least;
   double high = (scene.box->max - scene.box->min).maxCoeff();
   const auto fits = [&](double pitch) {
-    const Eigen::Vector3d shape = lattice_shape(g, scene, pitch).cast<double>();
-    return shape.prod() >= static_cast<double>(g.count);
+    return lattice.count_in(lattice_shape(g, scene, lattice, pitch)) >= static_cast<double>(g.count);
   };
   // Bisection down to neighbouring doubles takes fewer halvings than a double has bits.
   for (int halving = 0; halving < 64 && low < high; ++halving) {
@@ -153,28 +181,40 @@ double widest_pitch(const Generator& g, const Scenario& scene, double least) {
   return low;
 }
 
-/// A square or cubic lattice, x fastest; with a box and no gap as wide as the box allows.
+/// The balls on the sites of the lattice, x fastest, the first one at `first`.
+void fill_sites(const Lattice& lattice, const Eigen::Vector3i& shape, const Vec3& first, double pitch,
+                std::vector<Ball>& balls) {
+  const Vec3 spacing = pitch * lattice.spacing;
+  auto ball = balls.begin();
+  for (int z = 0; z < shape[2]; ++z) {
+    for (int y = 0; y < shape[1]; ++y) {
+      for (int x = 0; x < shape[0]; ++x) {
+        if (!lattice.has(x, y, z)) continue;
+        if (ball == balls.end()) return;
+        ball->position = first + spacing.cwiseProduct(Vec3(x, y, z));
+        ++ball;
+      }
+    }
+  }
+}
+
+/// A lattice in its arrangement; with a box and no gap as wide as the box allows.
 void place_lattice(const Generator& g, const Scenario& scene, std::vector<Ball>& balls) {
+  const Lattice lattice = lattice_of(g, scene.dimension);
   double largest = 0.0;
   for (const Ball& ball : balls) largest = std::max(largest, ball.radius);
   double pitch = 2.0 * largest + g.gap.value_or(scene.box ? 0.0 : 2.0 * largest);
-  const Eigen::Vector3d tightest = lattice_shape(g, scene, pitch).cast<double>();
-  if (tightest.prod() < static_cast<double>(balls.size())) {
-    throw DoesNotFit(
-        fmt::format("the box holds {} balls on a lattice, not {}", tightest.prod(), balls.size()));
+  const double most = lattice.count_in(lattice_shape(g, scene, lattice, pitch));
+  if (most < static_cast<double>(balls.size())) {
+    throw DoesNotFit(fmt::format("the box holds {} balls on a lattice, not {}", most, balls.size()));
   }
-  if (scene.box && !g.gap) pitch = widest_pitch(g, scene, pitch);
+  if (scene.box && !g.gap) pitch = widest_pitch(g, scene, lattice, pitch);
 
-  const Eigen::Vector3i shape = lattice_shape(g, scene, pitch);
   const Vec3 corner = scene.box ? Vec3(scene.box->min) : Vec3(Vec3::Zero());
   Vec3 first = Vec3::Zero();
   for (int axis = 0; axis < scene.dimension; ++axis) first[axis] = corner[axis] + 0.5 * pitch;
   if (g.position) first = *g.position;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    const int site = static_cast<int>(i);
-    const Eigen::Vector3i cell(site % shape[0], site / shape[0] % shape[1], site / shape[0] / shape[1]);
-    balls[i].position = first + pitch * cell.cast<double>();
-  }
+  fill_sites(lattice, lattice_shape(g, scene, lattice, pitch), first, pitch, balls);
 }
 
 /// @throws DoesNotFit where the gap beside a ball is negative by more than the rounding of its coordinates:

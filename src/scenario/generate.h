@@ -14,7 +14,11 @@ namespace carom {
 /// What a [[balls]] table asks for. Unset values take the defaults stated at each member.
 struct Generator {
   enum class Kind { gas, lattice, line };
+  /// cubic: square in the plane. close: the densest there is, hexagonal in the plane, face-centred cubic in
+  /// space.
+  enum class Arrangement { cubic, close };
   Kind kind = Kind::gas;
+  Arrangement arrangement = Arrangement::cubic;  ///< lattice only
   std::size_t count = 0;
   std::uint64_t seed = 0;
   std::optional<std::pair<double, double>> radius;  ///< m, drawn uniformly; without it `packing` decides

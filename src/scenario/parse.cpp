@@ -59,6 +59,17 @@ Contact read_contact_keys(Reader& reader, Contact contact, bool spin) {
   return contact;
 }
 
+/// The laws of several contacts at once know no friction, on balls or on walls.
+MultiContact read_law(Reader& reader, const Scenario& scene) {
+  const std::vector<std::string_view> laws = {"sequential", "simultaneous", "generalized-reflections"};
+  const auto law = static_cast<MultiContact>(reader.word("law", laws).value_or(0));
+  const bool friction = scene.ball_contact.friction > 0.0 || scene.wall_contact.friction > 0.0;
+  if (law != MultiContact::sequential && friction) {
+    reader.fail_value("law", "\"sequential\" where friction is above 0: the other laws are frictionless");
+  }
+  return law;
+}
+
 void read_contacts(Reader& root, Scenario& scene) {
   if (auto reader = root.table("contact")) {
     scene.ball_contact = read_contact_keys(*reader, {}, scene.effects.spin);
@@ -67,6 +78,7 @@ void read_contacts(Reader& root, Scenario& scene) {
       scene.wall_contact = read_contact_keys(*wall, scene.ball_contact, scene.effects.spin);
       wall->finish();
     }
+    scene.multi_contact = read_law(*reader, scene);
     reader->finish();
   }
 }
@@ -163,6 +175,11 @@ Generator read_generator(Reader& reader, const Scenario& scene, const SceneOptio
   } else {
     g.position = reader.vector("position", scene.dimension);
     g.gap = reader.number("gap", kNotNegative);
+  }
+  if (g.kind == Kind::lattice) {
+    const std::vector<std::string_view> arrangements = {"cubic", "close"};
+    const auto arrangement = reader.word("arrangement", arrangements).value_or(0);
+    g.arrangement = static_cast<Generator::Arrangement>(arrangement);
   }
   if (g.kind == Kind::line) {
     g.direction = reader.vector("direction", scene.dimension);

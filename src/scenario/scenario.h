@@ -39,6 +39,13 @@ struct Contact {
   double tangential_restitution = 0.0;  ///< β0 in [-1, 1], used where the contact sticks
 };
 
+/// What touching balls do when impacts come at several of their contacts at once: no law of nature says.
+enum class MultiContact {
+  sequential,               ///< pair by pair until all separate
+  simultaneous,             ///< all contacts push at once
+  generalized_reflections,  ///< contacts that approach push at once, and so on along the balls
+};
+
 /// A fixed plane: a ball of radius r stays where normal·x - offset >= r. The normal is a unit vector.
 struct Wall {
   Vec3 normal = Vec3::UnitY();
@@ -130,6 +137,7 @@ struct Scenario {
   Effects effects;
   Contact ball_contact;
   Contact wall_contact;
+  MultiContact multi_contact = MultiContact::sequential;
   std::optional<Box> box;
   std::vector<Wall> walls;  ///< those of the box first (min x, max x, min y, …), then the file's own
   std::vector<Slab> slabs;

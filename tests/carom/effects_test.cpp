@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "carom/compose.h"
-#include "carom/laws/frictionless.h"
+#include "carom/effects/list.h"
 #include "tests/support/scenes.h"
 
 namespace carom::test {
@@ -19,16 +19,21 @@ Scenario thrown(const Vec3& velocity) {
 }
 
 BallState flown(const Scenario& scene, std::int64_t steps) {
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   return run(*simulation, scene, steps).front();
 }
 
 TEST(Effects, NotNamed_LeaveNothingBehind) {
-  // No effect, no acceleration: the type has no such code and no such column.
-  EXPECT_FALSE((FlightModel<3>::kAccelerates));
+  Scenario scene = thrown(Vec3::UnitX());
+  EXPECT_EQ(make_flight<2>(scene), nullptr);
+  EXPECT_TRUE(World<2>(scene.balls).inverse_inertia.empty());
+  EXPECT_EQ(World<2>(scene.balls).spin.axis(0).size(), 0U);
+  scene.effects.gravity = Vec3::UnitY();
+  EXPECT_NE(make_flight<2>(scene), nullptr);
   EXPECT_FALSE((FlightModel<3, Gravity<3>>::kDamps));
-  EXPECT_TRUE((FlightModel<3, Gravity<3>>::kAccelerates));
   EXPECT_TRUE((FlightModel<3, Gravity<3>, LinearDrag<3>>::kDamps));
+  EXPECT_FALSE((FlightModel<3, Gravity<3>, LinearDrag<3>>::kTurns));
+  EXPECT_TRUE((FlightModel<3, Magnus<3>>::kTurns));
 }
 
 TEST(Effects, TheSceneChooses_ExactlyWhatItNames) {
@@ -37,6 +42,7 @@ TEST(Effects, TheSceneChooses_ExactlyWhatItNames) {
       std::string names = (std::string() + ... +
                            (std::is_same_v<decltype(effects), Gravity<2>>      ? "g"
                             : std::is_same_v<decltype(effects), LinearDrag<2>> ? "l"
+                            : std::is_same_v<decltype(effects), Magnus<2>>     ? "m"
                                                                                : "q"));
       return names;
     });
@@ -51,6 +57,8 @@ TEST(Effects, TheSceneChooses_ExactlyWhatItNames) {
   EXPECT_EQ(chosen(scene), "gq");
   scene.effects.gravity.reset();
   EXPECT_EQ(chosen(scene), "q");
+  scene.effects.magnus = 0.1;
+  EXPECT_EQ(chosen(scene), "qm");
 }
 
 TEST(Gravity, Flight_IsExactAtAnyStep) {
@@ -127,7 +135,7 @@ TEST(Drag, TwoBallsUnderDifferentDrag_MeetWithoutOverlap) {
   heavy.radius = 0.2;
   Scenario scene = free_scene(2, {light, heavy}, 1.0, 0.02);
   scene.effects.drag = Drag{Drag::Kind::linear, 0.2};
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   for (int k = 0; k < 50; ++k) {
     simulation->advance(0.02, 1);
     const auto states = states_of(*simulation, 2);

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "carom/compose.h"
-#include "carom/laws/frictionless.h"
 #include "tests/support/scenes.h"
 
 namespace carom::test {
@@ -68,7 +67,7 @@ TEST_P(TwoBalls, AreRightTo1e12_AnyMassesAnyAngle_AtAnyStep) {
     const double e = trial % 2 == 0 ? 1.0 : random.uniform();
     Scenario scene = free_scene(3, {a, b}, 2.5, 1.0);
     scene.ball_contact.restitution = e;
-    const auto simulation = compose<Frictionless>(scene);
+    const auto simulation = compose(scene, {"toi", ""});
     const auto states = run(*simulation, scene, GetParam());
     const PairOutcome expected = pair_outcome(a, b, e, scene.duration_s);
     ASSERT_EQ(simulation->tally().impacts, 1);
@@ -87,7 +86,7 @@ TEST(ToiEvolver, GlancingHit_TurnsByTheRightAngle_InOneLongStep) {
   // b = 0.999: the line of centres stands at asin(0.999) to the path.
   Scenario scene =
       free_scene(2, {ball(1, 0.5, Vec3(-2, 0.999, 0), Vec3(1, 0, 0)), ball(1, 0.5, Vec3::Zero())}, 4, 4);
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 1);
   const double sine = 0.999;
   const double cosine = std::sqrt(1.0 - sine * sine);
@@ -102,7 +101,7 @@ TEST(ToiEvolver, ImpactsWithinAStep_AreInOrderOfTime) {
                               {ball(1, 0.1, Vec3(0, 0, 0), Vec3(1, 0, 0)), ball(1, 0.1, Vec3(1, 0, 0)),
                                ball(1, 0.1, Vec3(2, 0, 0)), ball(1, 0.1, Vec3(3, 0, 0))},
                               5.0, 5.0);
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 1);
   EXPECT_EQ(simulation->tally().impacts, 3);
   EXPECT_EQ(states[0].velocity.x(), 0.0);
@@ -120,7 +119,7 @@ TEST(ToiEvolver, GalperinsBalls_CountTheDigitsOfPi) {
     Scenario scene =
         free_scene(2, {ball(1, 0.1, Vec3(1, 0, 0)), ball(ratio, 0.1, Vec3(2, 0, 0), Vec3(-1, 0, 0))}, 20, 1);
     scene.walls.push_back({Vec3::UnitX(), 0.0});
-    const auto simulation = compose<Frictionless>(scene);
+    const auto simulation = compose(scene, {"toi", ""});
     run(*simulation, scene, 20);
     EXPECT_EQ(simulation->tally().impacts, impacts) << "M/m = " << ratio;
   }
@@ -131,7 +130,7 @@ TEST(ToiEvolver, Gas_ConservesEnergyAndAccountsForTheWalls) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       SCOPED_TRACE(testing::Message() << dimension << "D, seed " << seed);
       const ScenarioPtr scene = gas(dimension, 100, 0.2, 4.0, seed);
-      const auto simulation = compose<Frictionless>(*scene);
+      const auto simulation = compose(*scene, {"toi", ""});
       const auto states = run(*simulation, *scene, 50);
       const double before = kinetic_energy_of(*scene, states_of(*scene));
       const auto impacts = static_cast<double>(simulation->tally().impacts);
@@ -150,7 +149,7 @@ TEST(ToiEvolver, InelasticGas_NeverGainsEnergy) {
   for (const double e : {0.0, 0.3, 0.9}) {
     const std::string contact = "[contact]\nrestitution = " + std::to_string(e);
     const ScenarioPtr scene = gas(2, 60, 0.3, 4.0, 9, contact);
-    const auto simulation = compose<Frictionless>(*scene);
+    const auto simulation = compose(*scene, {"toi", ""});
     double last = kinetic_energy_of(*scene, states_of(*scene));
     for (int k = 0; k < 200; ++k) {
       simulation->advance(0.01, 1);
@@ -173,7 +172,7 @@ TEST(ToiEvolver, DroppedBall_KeepsItsApex_Over100Bounces) {
   const double height = 10.0;
   const double fall = std::sqrt(2.0 * height / 9.81);
   const Scenario scene = dropped(height, 1.0, 200.0 * fall);
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const std::int64_t steps = 285'000;
   const auto states = run(*simulation, scene, steps);
   EXPECT_EQ(simulation->tally().impacts, 100);
@@ -187,7 +186,7 @@ TEST(ToiEvolver, LossyBall_ComesToRestAtTheRightTime_AndStays) {
   const double fall = std::sqrt(2.0 * 10.0 / 9.81);
   const double rest_time = fall * (1.0 + e) / (1.0 - e);
   Scenario scene = dropped(10.0, e, rest_time + 5.0);
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 20'000);
   // Bounces shorter than 1/1000 of the step are left out; none is higher than g (step/1000)²/8.
   EXPECT_NEAR(states[0].position.y(), 0.1, 1e-12);
@@ -199,7 +198,7 @@ TEST(ToiEvolver, LossyBall_ComesToRestAtTheRightTime_AndStays) {
 TEST(ToiEvolver, BallOnTheFloor_DoesNotSink_InAMillionSteps) {
   Scenario scene = dropped(0.0, 0.5, 1000.0);
   scene.balls[0].velocity = Vec3(0.001, 0, 0);
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 1'000'000);
   EXPECT_NEAR(states[0].position.y(), 0.1, 1e-13);
   EXPECT_NEAR(states[0].position.x(), 1.0, 1e-10);
@@ -210,7 +209,7 @@ TEST(ToiEvolver, TwoBallsOnEachOther_StayInPlace) {
   Scenario scene = dropped(0.0, 0.5, 2.0);
   scene.ball_contact.restitution = 0.5;
   scene.balls.push_back(ball(2, 0.1, Vec3(0, 0.3 + 1e-3, 0)));
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 480);
   EXPECT_NEAR(states[0].position.y(), 0.1, 1e-9);
   EXPECT_NEAR(states[1].position.y(), 0.3, 1e-9);
@@ -223,7 +222,7 @@ TEST(ToiEvolver, BallInATiltedCorner_ComesToRestInIt) {
   const double tilt = 0.65;
   scene.walls = {{Vec3(std::sin(tilt), std::cos(tilt), 0), 0.0},
                  {Vec3(-std::cos(tilt), std::sin(tilt), 0), 0.0}};
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 300);
   for (const Wall& wall : scene.walls) {
     // Rebounds that are left out are lower than g (step/1000)²/8 = 1.2e-10 m.
@@ -237,7 +236,7 @@ TEST(ToiEvolver, BallInATiltedCorner_ComesToRestInIt) {
 TEST(ToiEvolver, RestingBallUnderDrag_IsBorneByItsWholeWeight) {
   Scenario scene = dropped(0.0, 0.5, 2.0);
   scene.effects.drag = Drag{Drag::Kind::linear, 3.0};
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   run(*simulation, scene, 200);
   EXPECT_NEAR(simulation->tally().external_impulse.y(), 9.81 * scene.duration_s, 1e-12);
 }
@@ -247,7 +246,7 @@ TEST(ToiEvolver, StackThatIsHit_AccountsForTheFloor) {
   scene.ball_contact.restitution = 0.5;
   scene.balls.push_back(ball(1, 0.1, Vec3(0, 0.3, 0)));
   scene.balls.push_back(ball(2, 0.1, Vec3(0.02, 1.0, 0)));
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 240);
   const Vec3 expected = Vec3(0, -9.81 * 4.0 * scene.duration_s, 0) + simulation->tally().external_impulse;
   EXPECT_LE((momentum_of(scene, states) - expected).norm(), 1e-9);
@@ -256,7 +255,7 @@ TEST(ToiEvolver, StackThatIsHit_AccountsForTheFloor) {
 TEST(ToiEvolver, Pile_SettlesWithoutSinkingOrGainingEnergy) {
   const ScenarioPtr scene =
       gas(2, 20, 0.3, 2.0, 5, "[effects]\ngravity = [0, -9.81]\n[contact]\nrestitution = 0.3\n");
-  const auto simulation = compose<Frictionless>(*scene);
+  const auto simulation = compose(*scene, {"toi", ""});
   const auto energy = [&](const std::vector<BallState>& states) {
     double sum = kinetic_energy_of(*scene, states);
     for (std::size_t i = 0; i < states.size(); ++i)
@@ -286,7 +285,7 @@ TEST(ToiEvolver, InelasticCollapse_Ends) {
                                ball(1, 0.1, Vec3(1, 0, 0), Vec3(-1, 0, 0))},
                               3.0, 0.01);
   scene.ball_contact.restitution = 0.05;
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 300);
   EXPECT_NEAR(momentum_of(scene, states).x(), 0.0, 8.0 * kEpsilon);
   EXPECT_LT(simulation->tally().impacts, 1000);
@@ -298,7 +297,7 @@ TEST(ToiEvolver, ImmovableBalls_StayAndPushBack_AndIgnoreEachOther) {
                               {ball(inf, 0.5, Vec3(2, 0, 0)), ball(inf, 0.5, Vec3(2.5, 0, 0)),
                                ball(2, 0.1, Vec3::Zero(), Vec3(1, 0, 0))},
                               3.0, 0.1);
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 30);
   EXPECT_EQ(states[0].position, Vec3(2, 0, 0));
   EXPECT_EQ(states[1].position, Vec3(2.5, 0, 0));
@@ -310,7 +309,7 @@ TEST(ToiEvolver, WithoutCollisions_BallsPassThroughEachOther) {
   Scenario scene =
       free_scene(2, {ball(1, 0.1, Vec3(-1, 0, 0), Vec3(1, 0, 0)), ball(1, 0.1, Vec3::Zero())}, 2, 0.1);
   scene.effects.collisions = false;
-  const auto simulation = compose<Frictionless>(scene);
+  const auto simulation = compose(scene, {"toi", ""});
   const auto states = run(*simulation, scene, 20);
   EXPECT_NEAR(states[0].position.x(), 1.0, 32 * kEpsilon);
   EXPECT_EQ(states[1].position.x(), 0.0);

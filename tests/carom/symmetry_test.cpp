@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "carom/compose.h"
-#include "carom/laws/frictionless.h"
 #include "tests/support/scenes.h"
 
 // What must hold for any right engine, without any truth. Where a scene and its image are not rounded alike,
@@ -25,8 +24,8 @@ class Symmetry : public testing::TestWithParam<std::tuple<int, std::uint64_t>> {
     Scenario disturbed = scene;
     Random random(99);
     for (Ball& ball : disturbed.balls) ball.position += random_vector(random, scene.dimension, kDisturbance);
-    const auto a = run(*compose<Frictionless>(scene), scene, kSteps);
-    const auto b = run(*compose<Frictionless>(disturbed), disturbed, kSteps);
+    const auto a = run(*compose(scene, {"toi", ""}), scene, kSteps);
+    const auto b = run(*compose(disturbed, {"toi", ""}), disturbed, kSteps);
     double largest = 1.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
       largest = std::max(largest, (a[i].position - b[i].position).norm() / kDisturbance);
@@ -43,8 +42,8 @@ class Symmetry : public testing::TestWithParam<std::tuple<int, std::uint64_t>> {
   /// Runs the scene and its image, and holds the image of the outcome against the outcome of the image.
   static void expect_same(const Scenario& scene, const Scenario& image,
                           const std::function<BallState(const BallState&)>& map, double tolerance) {
-    const auto original = compose<Frictionless>(scene);
-    const auto imaged = compose<Frictionless>(image);
+    const auto original = compose(scene, {"toi", ""});
+    const auto imaged = compose(image, {"toi", ""});
     const auto a = run(*original, scene, kSteps);
     const auto b = run(*imaged, image, kSteps);
     EXPECT_GT(original->tally().impacts, 10);
@@ -131,8 +130,8 @@ TEST_P(Symmetry, Relabelling) {
   const ScenarioPtr s = scene();
   Scenario relabelled = *s;
   std::reverse(relabelled.balls.begin(), relabelled.balls.end());
-  const auto original = compose<Frictionless>(*s);
-  const auto image = compose<Frictionless>(relabelled);
+  const auto original = compose(*s, {"toi", ""});
+  const auto image = compose(relabelled, {"toi", ""});
   const auto a = run(*original, *s, kSteps);
   const auto b = run(*image, relabelled, kSteps);
   const double tolerance = tolerance_of(*s);
@@ -143,14 +142,14 @@ TEST_P(Symmetry, Relabelling) {
 
 TEST_P(Symmetry, Reversal_ReturnsToTheStart) {
   const ScenarioPtr s = scene();
-  const auto forth = compose<Frictionless>(*s);
+  const auto forth = compose(*s, {"toi", ""});
   const auto end = run(*forth, *s, kSteps);
   Scenario reversed = *s;
   for (std::size_t i = 0; i < end.size(); ++i) {
     reversed.balls[i].position = end[i].position;
     reversed.balls[i].velocity = -end[i].velocity;
   }
-  const auto back = compose<Frictionless>(reversed);
+  const auto back = compose(reversed, {"toi", ""});
   const auto start = run(*back, reversed, kSteps);
   const double tolerance = tolerance_of(*s) + tolerance_of(reversed);
   for (std::size_t i = 0; i < start.size(); ++i) {
@@ -161,9 +160,9 @@ TEST_P(Symmetry, Reversal_ReturnsToTheStart) {
 
 TEST_P(Symmetry, SameBitsTwice_AndStepDoesNotMatterBeyondRounding) {
   const ScenarioPtr s = scene();
-  const auto once = compose<Frictionless>(*s);
-  const auto again = compose<Frictionless>(*s);
-  const auto coarse = compose<Frictionless>(*s);
+  const auto once = compose(*s, {"toi", ""});
+  const auto again = compose(*s, {"toi", ""});
+  const auto coarse = compose(*s, {"toi", ""});
   const auto a = run(*once, *s, kSteps);
   const auto b = run(*again, *s, kSteps);
   const auto c = run(*coarse, *s, 3);

@@ -463,6 +463,114 @@ TEST(Generate, LineOfUnequalBalls_HasEqualGapsBetweenSurfaces) {
   }
 }
 
+// --- close packings
+// ---------------------------------------------------------------------------------------
+
+Generator close_packed(std::size_t count, double radius) {
+  Generator generator = row(Generator::Kind::lattice, count, radius);
+  generator.arrangement = Generator::Arrangement::close;
+  return generator;
+}
+
+/// How many others each ball touches, within rounding.
+std::vector<std::size_t> touching(const std::vector<Ball>& balls) {
+  std::vector<std::size_t> counts(balls.size(), 0);
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    for (std::size_t j = 0; j < balls.size(); ++j) {
+      const double gap = (balls[i].position - balls[j].position).norm() - balls[i].radius - balls[j].radius;
+      if (i != j && std::abs(gap) <= kTouching) ++counts[i];
+    }
+  }
+  return counts;
+}
+
+// In the densest packings a ball inside touches 6 others in the plane and 12 in space, and none is nearer.
+TEST(Generate, ClosePacking_GivesEveryInnerBallAsManyNeighboursAsThereCanBe) {
+  for (const int dimension : {2, 3}) {
+    Scenario scene = boxed(dimension);
+    Generator generator = close_packed(dimension == 2 ? 80 : 300, 0.05);
+    generator.gap = 0.0;
+    const std::vector<Ball> balls = add(generator, scene);
+    EXPECT_LE(deepest_overlap_of(scene), kTouching);
+    const std::vector<std::size_t> counts = touching(balls);
+    const std::size_t most = dimension == 2 ? 6 : 12;
+    EXPECT_EQ(*std::max_element(counts.begin(), counts.end()), most);
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      // Inside: two rows from the walls, and below the last row begun.
+      const Vec3& x = balls[i].position;
+      const double top = balls.back().position[dimension - 1] - 0.15;
+      bool inside = x[dimension - 1] < top;
+      for (int axis = 0; axis < dimension; ++axis) inside = inside && x[axis] > 0.15 && x[axis] < 0.75;
+      if (inside) {
+        EXPECT_EQ(counts[i], most) << dimension << "D, ball " << i;
+      }
+    }
+  }
+}
+
+TEST(Generate, ClosePackingInABox_StandsClearInside_ForEveryCount) {
+  for (const int dimension : {2, 3}) {
+    for (const std::size_t count : {1U, 2U, 7U, 32U, 64U, 100U}) {
+      Scenario scene = boxed(dimension);
+      add(close_packed(count, 0.04), scene);
+      EXPECT_EQ(scene.balls.size(), count);
+      EXPECT_LE(deepest_overlap_of(scene), kTouching) << dimension << "D, " << count;
+    }
+  }
+}
+
+// Where random placement and the cubic lattice (0.785 and 0.524) end, walls included.
+TEST(Generate, ClosePacking_FillsMoreThanAnyOther) {
+  Scenario plane = boxed(2);
+  add(close_packed(400, std::sqrt(0.8 / (400.0 * std::numbers::pi))), plane);
+  EXPECT_LE(deepest_overlap_of(plane), kTouching);
+  Scenario space = boxed(3);
+  add(close_packed(500, std::cbrt(0.6 * 0.75 / (500.0 * std::numbers::pi))), space);
+  EXPECT_LE(deepest_overlap_of(space), kTouching);
+}
+
+// Ten diameters and a half take rows of ten, every other one half a ball to the side; all exact in binary.
+TEST(Generate, ClosePacking_TakesABoxThatJustFits_AndOneBallMoreDoesNot) {
+  const double height = 0.25 + 3.0 * 0.125 * std::numbers::sqrt3 + kTouching;
+  const auto box = [&] {
+    Scenario scene = boxed(2);
+    scene.box->max = Vec3(2.625, height, 0.0);
+    scene.walls[1].offset = -2.625;
+    scene.walls[3].offset = -height;
+    return scene;
+  };
+  Scenario full = box();
+  const std::vector<Ball> balls = add(close_packed(40, 0.125), full);
+  EXPECT_LE(deepest_overlap_of(full), kTouching * height);
+  EXPECT_NEAR(balls[0].position.x(), 0.125, kTouching);
+  EXPECT_NEAR(balls[10].position.x(), 0.25, kTouching);
+  EXPECT_NEAR(balls[39].position.x(), 2.5, kTouching);
+  Scenario again = box();
+  EXPECT_THROW(generate(close_packed(41, 0.125), again), DoesNotFit);
+}
+
+// Without a box the smallest block of full rows: 2 × 2 in the plane, face-centred cubes of edge √2 in space.
+TEST(Generate, ClosePackingWithoutBox_StartsWhereTold) {
+  Scenario open;
+  open.dimension = 2;
+  Generator generator = close_packed(4, 0.5);
+  generator.gap = 0.0;
+  generator.position = Vec3(1.0, 2.0, 0.0);
+  const std::vector<Ball> balls = generate(generator, open);
+  const double row_height = 0.5 * std::numbers::sqrt3;
+  const Vec3 sites[] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.5, row_height, 0.0}, {1.5, row_height, 0.0}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_LE((balls[i].position - *generator.position - sites[i]).norm(), kTouching) << i;
+  }
+  open.dimension = 3;
+  generator.count = 14;  // the corners and face centres of one cube, of three sites along each edge
+  double farthest = 0.0;
+  for (const Ball& ball : generate(generator, open)) {
+    farthest = std::max(farthest, (ball.position - *generator.position).cwiseAbs().maxCoeff());
+  }
+  EXPECT_NEAR(farthest, std::numbers::sqrt2, kTouching);
+}
+
 // --- what does not fit
 // ---------------------------------------------------------------------------------------
 

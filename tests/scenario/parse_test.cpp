@@ -12,13 +12,16 @@
 #include <vector>
 
 #include "core/error.h"
+#include "scenario/features.h"
 
 namespace carom {
 
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -850,6 +853,65 @@ TEST(LoadSceneOfTheCheckout, EveryScene_IsRight) {
     EXPECT_NO_THROW(load_scene(entry.path())) << entry.path();
   }
   EXPECT_GT(scenes, 0);
+}
+
+// --- the law of several contacts at once
+// ---------------------------------------------------------------------
+
+/// The least that is a scene, with this text for its [contact].
+std::string with_contact(const std::string& contact) {
+  return kMinimal + "[contact]\n" + contact;
+}
+
+TEST(ContactLaw, Words_NameTheLaws) {
+  const auto law_of = [](const std::string& contact) {
+    return parse_scene(with_contact(contact), "scene.toml")->multi_contact;
+  };
+  EXPECT_EQ(parse_scene(kMinimal, "scene.toml")->multi_contact, MultiContact::sequential);
+  EXPECT_EQ(law_of("restitution = 0.5\n"), MultiContact::sequential);
+  EXPECT_EQ(law_of("law = \"sequential\"\n"), MultiContact::sequential);
+  EXPECT_EQ(law_of("law = \"simultaneous\"\n"), MultiContact::simultaneous);
+  EXPECT_EQ(law_of("law = \"generalized-reflections\"\n"), MultiContact::generalized_reflections);
+}
+
+TEST(ContactLaw, OtherWord_IsRefusedWithTheAllowedOnes) {
+  for (const std::string wrong : {"\"both\"", "1", "\"\""}) {
+    const std::string error = error_of(with_contact("law = " + wrong + "\n"));
+    EXPECT_THAT(error, StartsWith("scene.toml:11:7: contact.law: found "));
+    EXPECT_THAT(error, HasSubstr("sequential"));
+    EXPECT_THAT(error, HasSubstr("simultaneous"));
+    EXPECT_THAT(error, HasSubstr("generalized-reflections"));
+  }
+}
+
+TEST(ContactLaw, OfTheWalls_IsNoKey) {
+  EXPECT_THAT(error_of(with_contact("[contact.wall]\nlaw = \"simultaneous\"\n")),
+              HasSubstr("contact.wall.law"));
+}
+
+TEST(ContactLaw, FrictionlessLaw_IsRefusedWithFriction) {
+  const std::string rough_balls = "friction = 0.1\n";
+  const std::string rough_walls = "[contact.wall]\nfriction = 0.1\n";
+  const std::string spin = "[effects]\nspin = true\n";
+  for (const std::string law : {"simultaneous", "generalized-reflections"}) {
+    const std::string key = "law = \"" + law + "\"\n";
+    for (const std::string& text : {with_contact(key + rough_balls), with_contact(key + rough_walls)}) {
+      const std::string error = error_of(text + spin);
+      EXPECT_THAT(error, StartsWith("scene.toml:11:7: contact.law: found '" + law + "'"));
+      EXPECT_THAT(error, HasSubstr("frictionless"));
+    }
+  }
+  EXPECT_NO_THROW(parse_scene(with_contact("law = \"sequential\"\n" + rough_balls) + spin, "scene.toml"));
+}
+
+TEST(ContactLaw, IsAFeature_UnlessItIsSequential) {
+  const auto features_of = [](const std::string& law) {
+    return required_features(*parse_scene(with_contact("law = \"" + law + "\"\n"), "scene.toml"));
+  };
+  EXPECT_THAT(features_of("simultaneous"), Contains(Feature::simultaneous));
+  EXPECT_THAT(features_of("generalized-reflections"), Contains(Feature::generalized_reflections));
+  EXPECT_THAT(features_of("sequential"), Not(Contains(Feature::simultaneous)));
+  EXPECT_THAT(features_of("sequential"), Not(Contains(Feature::generalized_reflections)));
 }
 
 }  // namespace

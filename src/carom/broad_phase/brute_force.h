@@ -3,17 +3,14 @@
 #include <span>
 #include <string_view>
 
-#include "carom/world.h"
+#include "carom/broad_phase/count.h"
+#include "carom/broad_phase/reach.h"
 
 namespace carom {
 
-/// A broad phase finds the pairs of balls that may meet within a step: ball i stays within bound[i] of where
-/// it stood when the step began, so i and j may meet only if |x_i - x_j| <= bound[i] + bound[j]. Every broad
-/// phase reports exactly these pairs, in an order of its own; what follows does not depend on the order.
-///
-/// This one looks at all of them: O(n²), obviously right, the twin of all others and the fastest for few
-/// balls.
-template <int Dim>
+/// Looks at all pairs: O(n²), obviously right, the twin of all other broad phases and the fastest for few
+/// balls. What a broad phase promises stands in broad_phase.h.
+template <int Dim, class Count = NoCount>
 class BruteForce {
  public:
   static constexpr std::string_view kName = "brute-force";
@@ -30,7 +27,7 @@ class BruteForce {
   void for_each_pair(Visit&& visit) const {
     for (std::size_t i = 0; i < bound_.size(); ++i) {
       for (std::size_t j = i + 1; j < bound_.size(); ++j) {
-        if (may_meet(i, j)) visit(i, j);
+        if (meets(i, j)) visit(i, j);
       }
     }
   }
@@ -42,20 +39,23 @@ class BruteForce {
   template <class Visit>
   void for_each_near(std::size_t ball, Visit&& visit) const {
     for (std::size_t j = 0; j < bound_.size(); ++j) {
-      if (j != ball && may_meet(ball, j)) visit(j);
+      if (j != ball && meets(ball, j)) visit(j);
     }
   }
 
- private:
-  Vec<Dim> at(std::size_t ball) const { return (*position_)[ball]; }
+  const Count& count() const { return count_; }
 
-  bool may_meet(std::size_t i, std::size_t j) const {
-    const double reach = bound_[i] + bound_[j];
-    return (at(i) - at(j)).squaredNorm() <= reach * reach;
+ private:
+  Reach<Dim> reach(std::size_t ball) const { return {(*position_)[ball], bound_[ball]}; }
+
+  bool meets(std::size_t i, std::size_t j) const {
+    count_.pair_test();
+    return may_meet(reach(i), reach(j));
   }
 
   const VectorColumn<Dim>* position_ = nullptr;  ///< where the balls stood when the step began
   std::span<const double> bound_;
+  [[no_unique_address]] Count count_;
 };
 
 }  // namespace carom

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "carom/effects/kind.h"
 #include "carom/world.h"
 
 namespace carom {
@@ -9,7 +10,7 @@ namespace carom {
 /// Uniform gravity: a = g for every movable ball (m/s², the scene's frame).
 template <int Dim>
 struct Gravity {
-  static constexpr bool kDamps = false;
+  static constexpr EffectKind kKind = EffectKind::field;
   Vec<Dim> g;
 
   static std::optional<Gravity> engaged(const Scenario& scene) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "carom/effects/kind.h"
 #include "carom/world.h"
 
 namespace carom {
@@ -9,7 +10,7 @@ namespace carom {
 /// Linear (Stokes) drag F = -c v: damps the velocity at the rate c/m (c in kg/s, rate in 1/s).
 template <int Dim>
 struct LinearDrag {
-  static constexpr bool kDamps = true;
+  static constexpr EffectKind kKind = EffectKind::damping;
   double c;
 
   static std::optional<LinearDrag> engaged(const Scenario& scene) {

@@ -2,16 +2,14 @@
 
 #include "carom/effects/gravity.h"
 #include "carom/effects/linear_drag.h"
+#include "carom/effects/magnus.h"
 #include "carom/effects/quadratic_drag.h"
 
 namespace carom {
 
 // Effects are composed at compile time: for every combination of these that a scene can ask for there is one
-// evolver that contains exactly them. A new effect is a header beside this one and its name in the list.
-//
-// An effect says when a scene engages it (`engaged`), and either
-//   kDamps = false: acceleration(world, ball), an acceleration that does not depend on the velocity, or
-//   kDamps = true:  damping_rate(world, ball, velocity), the λ >= 0 of a force -λ m v.
+// flight model that contains exactly them. A new effect is a header beside this one and its name in the list.
+// An effect says when a scene engages it (`engaged`), of which kind it is (kind.h), and what it does.
 
 /// Effects of which a scene has at most one.
 template <class... Alternatives>
@@ -21,7 +19,7 @@ template <class... EachSlot>
 struct Slots {};
 
 template <int Dim>
-using EffectSlots = Slots<Slot<Gravity<Dim>>, Slot<LinearDrag<Dim>, QuadraticDrag<Dim>>>;
+using EffectSlots = Slots<Slot<Gravity<Dim>>, Slot<LinearDrag<Dim>, QuadraticDrag<Dim>>, Slot<Magnus<Dim>>>;
 
 /// Calls build(effects...) with the effects that the scene engages, each by value and by its own type.
 template <class Build, class... Chosen>

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "carom/effects/kind.h"
 #include "carom/world.h"
 
 namespace carom {
@@ -9,7 +10,7 @@ namespace carom {
 /// Quadratic (Newton) drag F = -c |v| v: damps the velocity at the rate c |v| / m (c in kg/m, rate in 1/s).
 template <int Dim>
 struct QuadraticDrag {
-  static constexpr bool kDamps = true;
+  static constexpr EffectKind kKind = EffectKind::damping;
   double c;
 
   static std::optional<QuadraticDrag> engaged(const Scenario& scene) {

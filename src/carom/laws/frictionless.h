@@ -1,6 +1,9 @@
 #pragma once
 
+#include <string_view>
+
 #include "carom/world.h"
+#include "scenario/scenario.h"
 
 namespace carom {
 
@@ -13,14 +16,15 @@ namespace carom {
 /// Source: e.g. W. J. Stronge, "Impact Mechanics" (2000), §2.3.
 struct Frictionless {
   static constexpr std::string_view kName = "frictionless";
+  static constexpr bool kFriction = false;
 
   /// Returns the impulse on b, N s; a gets the opposite. @pre not both are immovable.
   template <int Dim>
   static Vec<Dim> between(World<Dim>& world, std::size_t a, std::size_t b, const Vec<Dim>& normal,
-                          double restitution) {
+                          const Contact& surface) {
     const double inverse_mass = world.inverse_mass[a] + world.inverse_mass[b];
     const double v_n = normal.dot(world.velocity[b] - world.velocity[a]);
-    Vec<Dim> impulse = (-(1.0 + restitution) * v_n / inverse_mass) * normal;
+    Vec<Dim> impulse = (-(1.0 + surface.restitution) * v_n / inverse_mass) * normal;
     world.velocity.set(a, world.velocity[a] - world.inverse_mass[a] * impulse);
     world.velocity.set(b, world.velocity[b] + world.inverse_mass[b] * impulse);
     return impulse;
@@ -28,9 +32,10 @@ struct Frictionless {
 
   /// Returns the impulse on the ball, N s. @pre the ball is movable; the normal points away from the wall.
   template <int Dim>
-  static Vec<Dim> on_wall(World<Dim>& world, std::size_t ball, const Vec<Dim>& normal, double restitution) {
+  static Vec<Dim> on_wall(World<Dim>& world, std::size_t ball, const Vec<Dim>& normal,
+                          const Contact& surface) {
     const double v_n = normal.dot(world.velocity[ball]);
-    const Vec<Dim> change = (-(1.0 + restitution) * v_n) * normal;
+    const Vec<Dim> change = (-(1.0 + surface.restitution) * v_n) * normal;
     world.velocity.set(ball, world.velocity[ball] + change);
     return change / world.inverse_mass[ball];
   }

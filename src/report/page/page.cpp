@@ -6,6 +6,7 @@
 #include "report/page/overview.h"
 #include "report/page/scene_section.h"
 #include "report/page/style.h"
+#include "report/page/survival.h"
 
 namespace carom {
 
@@ -22,14 +23,13 @@ std::string head(const std::filesystem::path& web) {
          "</script>\n</head>\n";
 }
 
-void add_navigation(Node body) {
+void add_navigation(Node body, const Results& results) {
   add(body, "a", {{"class", "skip"}, {"href", "#overview"}}, "Skip to the results");
   Node bar = add(body, "nav", {{"aria-label", "Parts of this page"}});
-  for (const auto& [anchor, name] : {std::pair{"#overview", "All scenes"},
-                                     {"#guide", "How to read this page"},
-                                     {"#engines", "The engines"}}) {
-    add(bar, "a", {{"href", anchor}}, name);
-  }
+  add(bar, "a", {{"href", "#overview"}}, "All scenes");
+  if (has_hard_cases(results)) add(bar, "a", {{"href", "#survival"}}, "Hard cases");
+  add(bar, "a", {{"href", "#guide"}}, "How to read this page");
+  add(bar, "a", {{"href", "#engines"}}, "The engines");
 }
 
 }  // namespace
@@ -38,9 +38,10 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   const Legend legend(results.scenes);
   pugi::xml_document document;
   Node body = document.append_child("body");
-  add_navigation(body);
+  add_navigation(body, results);
   Node main = add(body, "main");
   add_overview(main, results, legend);
+  add_survival(main, results, legend);
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);

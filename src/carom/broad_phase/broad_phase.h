@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "carom/world.h"
+
+namespace carom {
+
+/// Two balls that may meet, the lower number first.
+using BallPair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// A broad phase finds the pairs of balls that may meet within a step: ball i stays within bound[i] of where
+/// it stood when the step began, so i and j may meet only if |x_i - x_j| <= bound[i] + bound[j]. Every broad
+/// phase reports exactly these pairs, in an order of its own; what follows does not depend on the order.
+///
+/// This is how an evolver sees it: one call a step, and one for each ball that was hit. Inside, each is a
+/// template that visits pairs without calls.
+template <int Dim>
+class BroadPhase {
+ public:
+  BroadPhase() = default;
+  BroadPhase(const BroadPhase&) = delete;
+  BroadPhase& operator=(const BroadPhase&) = delete;
+  virtual ~BroadPhase() = default;
+
+  virtual std::string_view name() const = 0;
+
+  /// Starts a step. Positions and bounds are columns of the caller's: the positions stay as they are during
+  /// the step, the bounds may grow.
+  virtual void build(const VectorColumn<Dim>& position, std::span<const double> bound) = 0;
+
+  /// Replaces `pairs` by every pair that may meet, each once.
+  virtual void find_pairs(std::vector<BallPair>& pairs) const = 0;
+
+  /// Says that bound[ball] has grown.
+  virtual void bound_grew(std::size_t ball) = 0;
+
+  /// Replaces `others` by every other ball that `ball` may meet.
+  virtual void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const = 0;
+};
+
+/// A broad phase as an evolver takes it, made from one that visits.
+template <int Dim, class Visitor>
+class BroadPhaseOf final : public BroadPhase<Dim> {
+ public:
+  std::string_view name() const override { return Visitor::kName; }
+
+  void build(const VectorColumn<Dim>& position, std::span<const double> bound) override {
+    visitor_.build(position, bound);
+  }
+
+  void find_pairs(std::vector<BallPair>& pairs) const override {
+    pairs.clear();
+    visitor_.for_each_pair([&pairs](std::size_t i, std::size_t j) {
+      pairs.emplace_back(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+    });
+  }
+
+  void bound_grew(std::size_t ball) override { visitor_.bound_grew(ball); }
+
+  void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const override {
+    others.clear();
+    visitor_.for_each_near(
+        ball, [&others](std::size_t other) { others.push_back(static_cast<std::uint32_t>(other)); });
+  }
+
+ private:
+  Visitor visitor_;
+};
+
+}  // namespace carom

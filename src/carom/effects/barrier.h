@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "carom/plane.h"
+
+namespace carom {
+
+/// A quantum barrier: a ball that meets a face passes with the probability
+///   E < V:  T = 1 / (1 + V² sinh²(κ a) / (4 E (V - E))),  κ = √(2 m (V - E)) / ħ,      (1)
+///   E > V:  T = 1 / (1 + V² sin²(k a) / (4 E (E - V))),   k = √(2 m (E - V)) / ħ,
+///   E = V:  T = 1 / (1 + m a² V / (2 ħ²)),
+/// with E = ½ m v_n² J, V the height J, a the thickness m, ħ in J s; it keeps its velocity and appears at the
+/// other face. Otherwise it is reflected elastically. Source: e.g. L. D. Landau, E. M. Lifshitz, "Quantum
+/// Mechanics", §25. Not to be confused with a slab that a ball jumps because the step is too long.
+///
+/// @param v_n_mps  the velocity along the normal
+inline double transmission(const Barrier& barrier, double mass_kg, double v_n_mps) {
+  const double energy = 0.5 * mass_kg * v_n_mps * v_n_mps;
+  const double above = energy - barrier.height;
+  if (barrier.height == 0.0) return 1.0;
+  if (energy == 0.0) return 0.0;
+  const double a_over_hbar = barrier.thickness / barrier.hbar;
+  // All three are one: V² a² m s(x)/(2 E ħ²), s = (sinh x/x)², 1, (sin x/x)², with x = a √(2 m |E - V|)/ħ.
+  const double x = a_over_hbar * std::sqrt(2.0 * mass_kg * std::abs(above));
+  const double ratio = x == 0.0 ? 1.0 : (above < 0.0 ? std::sinh(x) : std::sin(x)) / x;
+  const double amplitude = barrier.height * a_over_hbar * ratio;
+  return 1.0 / (1.0 + 0.5 * mass_kg / energy * amplitude * amplitude);
+}
+
+/// A number in [0, 1) that belongs to the n-th time a ball meets this barrier, whatever else happens in
+/// between and in whatever order. Source of the mixing: the finalizer of S. Vigna's SplitMix64.
+inline double draw(const Barrier& barrier, std::size_t ball, std::uint32_t meeting) {
+  const auto mixed = [](std::uint64_t z) {
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    return z ^ (z >> 31U);
+  };
+  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;
+  const std::uint64_t state = mixed(mixed(barrier.seed + kGolden) + ball) + meeting * kGolden;
+  return static_cast<double>(mixed(state) >> 11U) * 0x1p-53;
+}
+
+template <int Dim>
+void add_barriers(const Scenario& scene, std::vector<Plane<Dim>>& planes) {
+  for (std::size_t i = 0; i < scene.barriers.size(); ++i) {
+    add_faces<Dim>(scene.barriers[i], static_cast<std::int32_t>(i), planes);
+  }
+}
+
+}  // namespace carom

@@ -1,0 +1,178 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "carom/flight.h"
+#include "carom/world.h"
+
+namespace carom {
+
+/// The balls within a step, each flying on its own parabola from its own moment on, and the account of what
+/// walls and immovable balls push.
+///
+/// @tparam kAccelerates  false: no acceleration is stored, added, or even zero
+/// @tparam kFriction     whether pushes can turn the balls
+template <int Dim, bool kAccelerates, bool kFriction>
+class Flights {
+ public:
+  /// Whether a push that lasts turns balls: then spins change in flight.
+  static constexpr bool kTurning = kAccelerates && kFriction;
+
+  Flights(const Scenario& scene, std::unique_ptr<Flight<Dim>> model)
+      : world_(scene.balls, scene.effects.spin),
+        model_(std::move(model)),
+        clock_(world_.size(), 0.0),
+        stamp_(world_.size(), 0),
+        acceleration_(kAccelerates ? world_.size() : 0),
+        force_(kAccelerates ? world_.size() : 0),
+        spin_acceleration_(kTurning ? world_.size() : 0),
+        torque_(kTurning ? world_.size() : 0) {}
+
+  World<Dim>& world() { return world_; }
+  const World<Dim>& world() const { return world_; }
+  std::size_t size() const { return world_.size(); }
+  double step_s() const { return step_s_; }
+  double left_s(std::size_t ball) const { return step_s_ - clock_[ball]; }
+  double clock(std::size_t ball) const { return clock_[ball]; }
+  /// Counts the flights that a ball has begun in this step.
+  std::uint32_t stamp(std::size_t ball) const { return stamp_[ball]; }
+  /// What the strongest acceleration gives in a step, m/s.
+  double field_speed() const { return field_speed_; }
+  Tally& tally() { return tally_; }
+  const Tally& tally() const { return tally_; }
+
+  /// The columns that statics changes: accelerations m/s² and rad/s².
+  VectorColumn<Dim>& accelerations() { return acceleration_; }
+  VectorColumn<kSpinAxes<Dim>>& spin_accelerations() { return spin_acceleration_; }
+  Vec<Dim> acceleration(std::size_t ball) const {
+    if constexpr (kAccelerates) return acceleration_[ball];
+    return Vec<Dim>::Zero();
+  }
+
+  /// Begins a step: every ball flies freely.
+  void begin_step(double step_s) {
+    step_s_ = step_s;
+    field_speed_ = 0.0;
+    std::fill(stamp_.begin(), stamp_.end(), 0);
+    std::fill(clock_.begin(), clock_.end(), 0.0);
+    if constexpr (kAccelerates) {
+      model_->accelerations(world_, step_s, acceleration_);
+      double largest = 0.0;
+      for (std::size_t i = 0; i < size(); ++i) largest = std::max(largest, acceleration_[i].squaredNorm());
+      field_speed_ = step_s * std::sqrt(largest);
+      for (std::size_t i = 0; i < size(); ++i) force_.set(i, Vec<Dim>::Zero());
+    }
+    if constexpr (kTurning) {
+      for (std::size_t i = 0; i < size(); ++i) still(i);
+    }
+  }
+
+  void finish_step() {
+    for (std::size_t i = 0; i < size(); ++i) fly_to(i, step_s_);
+  }
+
+  /// A ball's flight from its clock on.
+  Motion<Dim> motion(std::size_t ball) const {
+    return {world_.position[ball], world_.velocity[ball], acceleration(ball)};
+  }
+
+  /// Where the ball is at a time of the step, its clock or later.
+  Motion<Dim> motion_at(std::size_t ball, double time_s) const {
+    return motion(ball).after(time_s - clock_[ball]);
+  }
+
+  /// How far the ball can get in `duration_s`, m.
+  double path_bound(std::size_t ball, double duration_s) const {
+    double speed = world_.velocity[ball].norm();
+    if constexpr (kAccelerates) speed += 0.5 * duration_s * acceleration_[ball].norm();
+    return speed * duration_s;
+  }
+
+  /// Moves the ball along its flight to a time of the step, and books what bears it on the way.
+  void fly_to(std::size_t ball, double time_s) {
+    const double tau = time_s - clock_[ball];
+    if constexpr (kAccelerates) {
+      if (!force_[ball].isZero(0.0)) book_force(ball, tau);
+      const Motion<Dim> then = motion(ball).after(tau);
+      world_.position.set(ball, then.x);
+      world_.velocity.set(ball, then.v);
+    } else {
+      world_.position.set(ball, world_.position[ball] + tau * world_.velocity[ball]);
+    }
+    if constexpr (kTurning) world_.spin.set(ball, world_.spin[ball] + tau * spin_acceleration_[ball]);
+    clock_[ball] = time_s;
+  }
+
+  /// After an impact: a new, free flight from here to the end of the step.
+  void begin_flight(std::size_t ball) {
+    if constexpr (kAccelerates) {
+      acceleration_.set(ball, model_->acceleration(world_, ball, left_s(ball)));
+      force_.set(ball, Vec<Dim>::Zero());
+    }
+    if constexpr (kTurning) still(ball);
+    ++stamp_[ball];
+  }
+
+  /// A new, straight flight with the velocity as it stands.
+  void coast(std::size_t ball) {
+    if constexpr (kAccelerates) {
+      acceleration_.set(ball, Vec<Dim>::Zero());
+      force_.set(ball, Vec<Dim>::Zero());
+    }
+    if constexpr (kTurning) still(ball);
+    ++stamp_[ball];
+  }
+
+  /// What a force N accelerates a ball by, 1/kg: less than 1/m where its own motion is damped.
+  double response(std::size_t ball) const {
+    if constexpr (!kAccelerates) return world_.inverse_mass[ball];
+    return world_.inverse_mass[ball] * model_->yield(world_, ball, left_s(ball));
+  }
+
+  // --- the account of walls and immovable balls, about the origin
+
+  /// An impulse on the ball, N s, that acts at `arm` from its centre.
+  void book_impulse(std::size_t ball, const Vec<Dim>& impulse, const Vec<Dim>& arm) {
+    const Vec3 wide = widened<Dim>(impulse);
+    tally_.external_impulse += wide;
+    tally_.external_angular_impulse += widened<Dim>(world_.position[ball] + arm).cross(wide);
+  }
+
+  /// From now on the ball bears a further force, N, that acts at `arm` from its centre.
+  void bear(std::size_t ball, const Vec<Dim>& force, const Vec<Dim>& arm) {
+    force_.set(ball, force_[ball] + force);
+    if constexpr (kTurning) torque_.set(ball, torque_[ball] + moment<Dim>(arm, force));
+  }
+
+ private:
+  void still(std::size_t ball) {
+    spin_acceleration_.set(ball, Spin<Dim>::Zero());
+    torque_.set(ball, Spin<Dim>::Zero());
+  }
+
+  /// ∫ x dt over the parabola gives the moment of a constant force.
+  void book_force(std::size_t ball, double tau) {
+    const Motion<Dim> m = motion(ball);
+    const Vec3 force = widened<Dim>(force_[ball]);
+    const Vec<Dim> path_integral = tau * (m.x + (0.5 * tau) * m.v + (tau * tau / 6.0) * m.a);
+    tally_.external_impulse += tau * force;
+    tally_.external_angular_impulse += widened<Dim>(path_integral).cross(force);
+    if constexpr (kTurning) tally_.external_angular_impulse += tau * widened_spin<Dim>(torque_[ball]);
+  }
+
+  World<Dim> world_;
+  std::unique_ptr<Flight<Dim>> model_;
+  Tally tally_;
+  double step_s_ = 0.0;
+  double field_speed_ = 0.0;
+  std::vector<double> clock_;  ///< s, from the start of the step: where position and velocity stand
+  std::vector<std::uint32_t> stamp_;
+  VectorColumn<Dim> acceleration_;
+  VectorColumn<Dim> force_;  ///< N, by the walls and immovable balls that bear the ball
+  VectorColumn<kSpinAxes<Dim>> spin_acceleration_;
+  VectorColumn<kSpinAxes<Dim>> torque_;  ///< N m, of force_ about the centre
+};
+
+}  // namespace carom

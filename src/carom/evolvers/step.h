@@ -1,0 +1,300 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carom/effects/barrier.h"
+#include "carom/effects/slab.h"
+#include "carom/evolvers/parts.h"
+#include "carom/evolvers/resting.h"
+#include "carom/laws/frictionless.h"
+
+namespace carom {
+
+/// The evolver `step`: fixed steps and discrete detection, what a student would write, done properly.
+///
+/// In a step of h seconds: v += a h, x += v h (symplectic Euler, first order; with a of flight.h); whatever
+/// overlaps then is in contact; contacts that approach get the impulse of the scene's law, in sweeps until
+/// none approaches; last, balls that still overlap are moved apart, each in proportion to its inverse mass.
+/// An approach slower than what the fields give in a step, |a| h, is no impact but rest, and is taken out
+/// without a rebound.
+///
+/// A contact is found up to v h too late, so an impact is off by as much and turns by the angle of that
+/// place: order 1 in h. A ball that is faster than its diameter a step can pass another, or a slab, unseen.
+///
+/// @tparam Traits  what the scene calls for, see traits.h
+template <class Traits>
+class StepEvolver final : public Simulation {
+ public:
+  static constexpr int kDim = Traits::kDim;
+  using Law = typename Traits::Law;
+
+  StepEvolver(const Scenario& scene, Parts<kDim> parts)
+      : world_(scene.balls, scene.effects.spin),
+        parts_(std::move(parts)),
+        planes_(planes_of<kDim>(scene.walls)),
+        surface_(scene.ball_contact),
+        wall_surface_(scene.wall_contact),
+        acceleration_(Traits::kAccelerates ? world_.size() : 0) {
+    if constexpr (Traits::kSheets) {
+      add_slabs<kDim>(scene, planes_);
+      add_barriers<kDim>(scene, planes_);
+      barriers_ = scene.barriers;
+      meetings_.assign(scene.barriers.empty() ? 0 : world_.size(), 0);
+    }
+  }
+
+  void advance(double step_s, std::int64_t steps) override {
+    for (std::int64_t k = 0; k < steps; ++k) {
+      move(step_s);
+      find_contacts();
+      resolve_impacts();
+      separate();
+    }
+  }
+
+  void snapshot(std::span<BallState> balls) const override { world_.snapshot(balls); }
+  Tally tally() const override { return tally_; }
+
+  Settings settings() const override {
+    return {{"evolver", std::string("step")},
+            {"law", std::string(Law::kName)},
+            {"touching_law", std::string(parts_.cluster_law ? parts_.cluster_law->name() : "sequential")},
+            {"broad_phase", std::string(parts_.broad_phase->name())},
+            {"most_sweeps", static_cast<double>(kMostSweeps)}};
+  }
+
+ private:
+  using Place = Vec<kDim>;
+
+  /// Sweeps over the contacts of a step: a chain of as many balls passes an impact on in one of them. What is
+  /// left approaching goes on in the next step.
+  static constexpr int kMostSweeps = 64;
+
+  struct Touch {
+    std::uint32_t a;
+    std::uint32_t b;
+    bool plane;
+  };
+
+  void move(double step_s) {
+    field_speed_ = 0.0;
+    if constexpr (Traits::kAccelerates) {
+      parts_.flight->accelerations(world_, step_s, acceleration_);
+      double largest = 0.0;
+      for (std::size_t i = 0; i < world_.size(); ++i) {
+        world_.velocity.set(i, world_.velocity[i] + step_s * acceleration_[i]);
+        largest = std::max(largest, acceleration_[i].squaredNorm());
+      }
+      field_speed_ = step_s * std::sqrt(largest);
+    }
+    for (int axis = 0; axis < kDim; ++axis) {
+      const std::span<double> x = world_.position.axis(axis);
+      const std::span<const double> v = std::as_const(world_.velocity).axis(axis);
+      for (std::size_t i = 0; i < world_.size(); ++i) x[i] += step_s * v[i];
+    }
+  }
+
+  void find_contacts() {
+    touches_.clear();
+    parts_.broad_phase->build(world_.position, world_.radius);
+    parts_.broad_phase->find_pairs(pairs_);
+    // The order of a broad phase is its own; the order of the contacts decides what happens.
+    std::sort(pairs_.begin(), pairs_.end());
+    for (const auto& [a, b] : pairs_) {
+      if (world_.inverse_mass[a] + world_.inverse_mass[b] > 0.0) touches_.push_back({a, b, false});
+    }
+    for (std::uint32_t plane = 0; plane < planes_.size(); ++plane) {
+      for (std::uint32_t ball = 0; ball < world_.size(); ++ball) {
+        if (planes_[plane].gap(world_.position[ball], world_.radius[ball]) > 0.0) continue;
+        if constexpr (Traits::kSheets) {
+          if (!planes_[plane].faces(world_.position[ball])) continue;
+        }
+        if (world_.inverse_mass[ball] > 0.0) touches_.push_back({ball, plane, true});
+      }
+    }
+  }
+
+  // --- impacts
+
+  void resolve_impacts() {
+    if (parts_.cluster_law) {
+      resolve_clusters();
+      return;
+    }
+    bool approaching = !touches_.empty();
+    for (int sweep = 0; sweep < kMostSweeps && approaching; ++sweep) {
+      approaching = false;
+      for (const Touch& touch : touches_) {
+        approaching = (touch.plane ? hit_plane(touch, sweep) : hit_ball(touch, sweep)) || approaching;
+      }
+    }
+  }
+
+  /// Returns whether the balls approached.
+  bool hit_ball(const Touch& touch, int sweep) {
+    const Place normal = normal_between<kDim>(world_.position[touch.a], world_.position[touch.b]);
+    const double v_n = normal.dot(world_.velocity[touch.b] - world_.velocity[touch.a]);
+    const double speeds = world_.velocity[touch.a].norm() + world_.velocity[touch.b].norm();
+    if (v_n >= -velocity_rounding(speeds)) return false;
+    count(v_n, sweep);
+    const Place impulse =
+        Law::template between<kDim>(world_, touch.a, touch.b, normal, rebounding(surface_, v_n));
+    if (world_.inverse_mass[touch.a] == 0.0) book(touch.b, impulse, -world_.radius[touch.b] * normal);
+    if (world_.inverse_mass[touch.b] == 0.0) book(touch.a, -impulse, world_.radius[touch.a] * normal);
+    return true;
+  }
+
+  bool hit_plane(const Touch& touch, int sweep) {
+    const Plane<kDim>& plane = planes_[touch.b];
+    const double v_n = plane.normal.dot(world_.velocity[touch.a]);
+    if (v_n >= -velocity_rounding(world_.velocity[touch.a].norm())) return false;
+    count(v_n, sweep);
+    if constexpr (Traits::kSheets) {
+      if (plane.barrier != kSolid) return hit_barrier(touch.a, plane, v_n);
+    }
+    const Place impulse =
+        Law::template on_wall<kDim>(world_, touch.a, plane.normal, rebounding(wall_surface_, v_n));
+    book(touch.a, impulse, -world_.radius[touch.a] * plane.normal);
+    return true;
+  }
+
+  bool hit_barrier(std::uint32_t ball, const Plane<kDim>& face, double v_n) {
+    const Barrier& barrier = barriers_[static_cast<std::size_t>(face.barrier)];
+    const double mass = 1.0 / world_.inverse_mass[ball];
+    if (draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n)) {
+      const Place way = -2.0 * (face.depth + world_.radius[ball]) * face.normal;
+      world_.position.set(ball, world_.position[ball] + way);
+      tally_.external_angular_impulse +=
+          widened<kDim>(way).cross(mass * widened<kDim>(world_.velocity[ball]));
+    } else {
+      const Contact mirror;  // elastic and smooth
+      book(ball, Frictionless::on_wall<kDim>(world_, ball, face.normal, mirror), Place::Zero());
+    }
+    return true;
+  }
+
+  /// Rest has no rebound.
+  Contact rebounding(Contact surface, double v_n) const {
+    if (-v_n <= field_speed_ && surface.restitution < 1.0) surface.restitution = 0.0;
+    return surface;
+  }
+
+  void count(double v_n, int sweep) {
+    if (sweep == 0 && -v_n > field_speed_) ++tally_.impacts;
+  }
+
+  void book(std::size_t ball, const Place& impulse, const Place& arm) {
+    const Vec3 wide = widened<kDim>(impulse);
+    tally_.external_impulse += wide;
+    tally_.external_angular_impulse += widened<kDim>(world_.position[ball] + arm).cross(wide);
+  }
+
+  // --- contacts that hang together, under a law for several at once
+
+  void resolve_clusters() {
+    root_.resize(world_.size());
+    std::iota(root_.begin(), root_.end(), 0U);
+    for (const Touch& touch : touches_) {
+      // Immovable balls and planes pass nothing on.
+      if (touch.plane || world_.inverse_mass[touch.a] * world_.inverse_mass[touch.b] == 0.0) continue;
+      const auto [low, high] = std::minmax({root_of(touch.a), root_of(touch.b)});
+      root_[high] = low;
+    }
+    const auto cluster_of = [this](const Touch& touch) {
+      return root_of(touch.plane || world_.inverse_mass[touch.a] > 0.0 ? touch.a : touch.b);
+    };
+    std::stable_sort(touches_.begin(), touches_.end(),
+                     [&](const Touch& x, const Touch& y) { return cluster_of(x) < cluster_of(y); });
+    for (std::size_t begin = 0; begin < touches_.size();) {
+      std::size_t end = begin;
+      while (end < touches_.size() && cluster_of(touches_[end]) == cluster_of(touches_[begin])) ++end;
+      resolve_cluster(begin, end);
+      begin = end;
+    }
+  }
+
+  std::uint32_t root_of(std::uint32_t ball) const {
+    while (root_[ball] != ball) ball = root_[ball];
+    return ball;
+  }
+
+  void resolve_cluster(std::size_t begin, std::size_t end) {
+    contacts_.clear();
+    bool approaching = false;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Touch& touch = touches_[k];
+      const Place normal = touch.plane
+                               ? planes_[touch.b].normal
+                               : normal_between<kDim>(world_.position[touch.a], world_.position[touch.b]);
+      const Place v =
+          touch.plane ? world_.velocity[touch.a] : Place(world_.velocity[touch.b] - world_.velocity[touch.a]);
+      const double v_n = normal.dot(v);
+      approaching = approaching || v_n < 0.0;
+      const Contact surface = rebounding(touch.plane ? wall_surface_ : surface_, v_n);
+      contacts_.push_back({touch.a, touch.b, touch.plane, normal, surface.restitution});
+      if (v_n < 0.0) count(v_n, 0);
+    }
+    if (!approaching) return;
+    parts_.cluster_law->resolve(world_, contacts_);
+    for (const ClosedContact<kDim>& contact : contacts_) {
+      const Place impulse = contact.impulse * contact.normal;
+      if (contact.wall) {
+        book(contact.a, impulse, Place::Zero());
+      } else if (world_.inverse_mass[contact.a] == 0.0) {
+        book(contact.b, impulse, Place::Zero());
+      } else if (world_.inverse_mass[contact.b] == 0.0) {
+        book(contact.a, -impulse, Place::Zero());
+      }
+    }
+  }
+
+  // --- position correction
+
+  /// Moves apart what overlaps, contact by contact.
+  void separate() {
+    for (const Touch& touch : touches_) {
+      if (touch.plane) {
+        const Plane<kDim>& plane = planes_[touch.b];
+        const double gap = plane.gap(world_.position[touch.a], world_.radius[touch.a]);
+        if (gap >= 0.0 || !plane.faces(world_.position[touch.a])) continue;
+        world_.position.set(touch.a, world_.position[touch.a] - gap * plane.normal);
+      } else {
+        separate_balls(touch.a, touch.b);
+      }
+    }
+  }
+
+  void separate_balls(std::uint32_t a, std::uint32_t b) {
+    const Place apart = world_.position[b] - world_.position[a];
+    const double gap = apart.norm() - world_.radius[a] - world_.radius[b];
+    if (gap >= 0.0) return;
+    const Place normal = normal_between<kDim>(world_.position[a], world_.position[b]);
+    const double share = gap / (world_.inverse_mass[a] + world_.inverse_mass[b]);
+    world_.position.set(a, world_.position[a] + (share * world_.inverse_mass[a]) * normal);
+    world_.position.set(b, world_.position[b] - (share * world_.inverse_mass[b]) * normal);
+  }
+
+  World<kDim> world_;
+  Parts<kDim> parts_;
+  std::vector<Plane<kDim>> planes_;
+  Contact surface_;
+  Contact wall_surface_;
+  VectorColumn<kDim> acceleration_;
+  double field_speed_ = 0.0;  ///< m/s, what the strongest acceleration gives in a step
+  Tally tally_;
+
+  std::vector<BallPair> pairs_;
+  std::vector<Touch> touches_;
+  std::vector<std::uint32_t> root_;
+  std::vector<ClosedContact<kDim>> contacts_;
+  std::vector<Barrier> barriers_;
+  std::vector<std::uint32_t> meetings_;  ///< with barriers, of each ball; empty without
+};
+
+}  // namespace carom

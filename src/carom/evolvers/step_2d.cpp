@@ -1,0 +1,11 @@
+#include "carom/evolvers/list.h"
+#include "carom/evolvers/step.h"
+#include "carom/evolvers/traits.h"
+
+namespace carom {
+
+std::unique_ptr<Simulation> make_step_2d(const Scenario& scene, Parts<2> parts) {
+  return make_with_traits<2, StepEvolver>(scene, std::move(parts));
+}
+
+}  // namespace carom

@@ -1,0 +1,11 @@
+#include "carom/evolvers/list.h"
+#include "carom/evolvers/toi.h"
+#include "carom/evolvers/traits.h"
+
+namespace carom {
+
+std::unique_ptr<Simulation> make_toi_3d(const Scenario& scene, Parts<3> parts) {
+  return make_with_traits<3, ToiEvolver>(scene, std::move(parts));
+}
+
+}  // namespace carom

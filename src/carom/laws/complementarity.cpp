@@ -1,0 +1,259 @@
+#include "carom/laws/complementarity.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace carom {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::SparseMatrix;
+using Eigen::VectorXd;
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// √ε of a normal's length: what of it the other normals do not span is nothing below this, for its square is
+/// the rounding of the whole. Of a light ball between heavy ones √(m/M) is left, so masses may be 10¹⁶ apart.
+constexpr double kIndependent = 0x1p-26;
+
+/// Sweeps before each solution on the contacts that push. They find which these are; few do, as another pass
+/// corrects them.
+constexpr int kSweepsInAPass = 8;
+
+/// Passes that are made at most. What they leave undone is for the next round of the impact.
+constexpr int kMostPasses = 200;
+
+/// Pivots per contact that are made at most. Each raises the dual objective, so none comes twice but for
+/// rounding; about one per contact is needed.
+constexpr Index kMostPivotsEach = 20;
+
+/// Roundings of an opening velocity, each ε/2 of all that impulses have changed it by: sums over a dozen
+/// contacts of a ball and over three axes.
+constexpr double kRoundings = 32.0;
+
+/// What w' is known to, m/s: what w was, and what the impulses have added.
+template <class Matrix>
+VectorXd rounding_after(const VectorXd& rounding, const Matrix& absolute_normals, const VectorXd& impulse) {
+  constexpr double kHalfUlp = 0.5 * std::numeric_limits<double>::epsilon();
+  return rounding + kRoundings * kHalfUlp * (absolute_normals.transpose() * (absolute_normals * impulse));
+}
+
+/// The dual active-set method: contacts below their aim are made active one by one, and active ones that
+/// would have to pull are let go. Between the steps λ >= 0 and λᵀw' = 0 hold, so it ends where w' >= 0.
+/// Source: D. Goldfarb, A. Idnani, "A numerically stable dual method for solving strictly convex quadratic
+/// programs", Math. Programming 27, 1 (1983), §3, with the identity for the matrix of the objective.
+class DualActiveSet {
+ public:
+  DualActiveSet(const SparseMatrix<double>& normals, const VectorXd& w, const VectorXd& rounding)
+      : normals_(normals),
+        absolute_normals_(normals_.cwiseAbs()),
+        start_(w),
+        rounding_(rounding),
+        impulse_(VectorXd::Zero(w.size())),
+        change_(VectorXd::Zero(w.size())),
+        pivots_left_(kMostPivotsEach * w.size()) {}
+
+  Complementary solve() {
+    for (Index contact = farthest_below(); contact >= 0; contact = farthest_below()) {
+      if (!activate(contact)) break;
+      meet_aims();
+    }
+    return {impulse_, change_};
+  }
+
+ private:
+  /// Of the contacts that are not active, the one farthest below its aim, in the metric of y; -1 where none
+  /// is.
+  Index farthest_below() const {
+    Index farthest = -1;
+    double most = 0.0;
+    const VectorXd rounding = rounding_after(rounding_, absolute_normals_, impulse_);
+    for (Index c = 0; c < start_.size(); ++c) {
+      const double w = start_[c] + change_[c];
+      if (w >= -rounding[c] || std::find(active_.begin(), active_.end(), c) != active_.end()) continue;
+      const double below = -w / normals_.col(c).norm();
+      if (below <= most) continue;
+      farthest = c;
+      most = below;
+    }
+    return farthest;
+  }
+
+  /// Raises the contact's impulse until its aim is met, letting go of active ones on the way. False where no
+  /// impulse meets it: the contact is wedged, or every pivot is spent.
+  bool activate(Index contact) {
+    const VectorXd normal = normals_.col(contact);
+    while (--pivots_left_ >= 0) {
+      const VectorXd relief = relief_of(normal);
+      const VectorXd free = normal - active_normals() * relief;
+      const bool independent = free.norm() > kIndependent * normal.norm();
+      const double meets = independent ? -(start_[contact] + change_[contact]) / free.squaredNorm() : kNever;
+      const auto [lets_go, position] = first_to_let_go(relief);
+      const double raise = std::min(meets, lets_go);
+      if (raise == kNever) return false;
+      impulse_[contact] += raise;
+      impulse_(active_) -= raise * relief;
+      if (independent) change_ += raise * (normals_.transpose() * free);
+      if (meets <= lets_go) {
+        active_.push_back(contact);
+        return true;
+      }
+      impulse_[active_[position]] = 0.0;
+      active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(position));
+    }
+    return false;
+  }
+
+  MatrixXd active_normals() const { return normals_(Eigen::all, active_); }
+
+  /// How much less the active contacts push for a unit of push along `normal`.
+  VectorXd relief_of(const VectorXd& normal) const {
+    if (active_.empty()) return VectorXd();
+    return active_normals().householderQr().solve(normal);
+  }
+
+  struct LettingGo {
+    double raise;
+    std::size_t position;  ///< in active_
+  };
+
+  LettingGo first_to_let_go(const VectorXd& relief) const {
+    LettingGo first{kNever, 0};
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      const double less = relief[static_cast<Index>(k)];
+      if (less <= 0.0) continue;
+      const double raise = std::max(0.0, impulse_[active_[k]] / less);
+      if (raise < first.raise) first = {raise, k};
+    }
+    return first;
+  }
+
+  /// Takes out what rounding has left at the active contacts.
+  void meet_aims() {
+    const MatrixXd normals = active_normals();
+    const Eigen::HouseholderQR<MatrixXd> factors(normals);
+    const auto upper = factors.matrixQR().topRows(normals.cols()).template triangularView<Eigen::Upper>();
+    change_ = normals_.transpose() * (normals_ * impulse_);
+    const VectorXd missing = -(start_ + change_)(active_);
+    impulse_(active_) += upper.solve(upper.transpose().solve(missing));
+    impulse_ = impulse_.cwiseMax(0.0);
+    change_ = normals_.transpose() * (normals_ * impulse_);
+  }
+
+  const MatrixXd normals_;
+  const MatrixXd absolute_normals_;
+  const VectorXd& start_;
+  const VectorXd& rounding_;
+  VectorXd impulse_;
+  VectorXd change_;
+  Index pivots_left_;
+  std::vector<Index> active_;  ///< contacts that push and meet their aims, their normals independent
+};
+
+/// Projected Gauss–Seidel, λ_c ← max(0, λ_c - w'_c/|b_c|²) contact by contact, with the contacts that push
+/// then solved as equations. Both lower ½ λᵀBᵀBλ + λᵀw, whose least value over λ >= 0 solves (1). The sweeps
+/// alone would need O(n²) of them to carry an impulse through n balls in a row.
+/// Source: M. Silcowitz, S. Niebur, K. Erleben, "Projected Gauss-Seidel subspace minimization method for
+/// interactive rigid body dynamics", GRAPP (2010).
+class SweepsAndSubspace {
+ public:
+  SweepsAndSubspace(const SparseMatrix<double>& normals, const VectorXd& w, const VectorXd& rounding)
+      : normals_(normals),
+        absolute_normals_(normals.cwiseAbs()),
+        start_(w),
+        rounding_(rounding),
+        impulse_(VectorXd::Zero(w.size())),
+        moved_(VectorXd::Zero(normals.rows())) {}
+
+  Complementary solve() {
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      for (int sweep = 0; sweep < kSweepsInAPass; ++sweep) relax_all();
+      solve_pushing();
+      if (solved()) break;
+    }
+    return {impulse_, normals_.transpose() * moved_};
+  }
+
+ private:
+  void relax_all() {
+    for (Index c = 0; c < start_.size(); ++c) {
+      const double w = start_[c] + normals_.col(c).dot(moved_);
+      const double next = std::max(0.0, impulse_[c] - w / normals_.col(c).squaredNorm());
+      moved_ += (next - impulse_[c]) * normals_.col(c);
+      impulse_[c] = next;
+    }
+  }
+
+  VectorXd openings() const { return start_ + normals_.transpose() * moved_; }
+
+  /// Steps towards w' = 0 at the contacts that push, as far as none has to pull.
+  void solve_pushing() {
+    const VectorXd pushing = (impulse_.array() > 0.0).cast<double>();
+    const VectorXd step = conjugate_gradients(pushing, -openings().cwiseProduct(pushing));
+    double share = 1.0;
+    for (Index c = 0; c < step.size(); ++c) {
+      if (step[c] < 0.0) share = std::min(share, impulse_[c] / -step[c]);
+    }
+    impulse_ = (impulse_ + share * step).cwiseMax(0.0);
+    moved_ = normals_ * impulse_;
+  }
+
+  /// x of BᵀB x = right side, over the contacts whose `pushing` is 1. Redundant contacts do not disturb it.
+  VectorXd conjugate_gradients(const VectorXd& pushing, VectorXd residual) const {
+    VectorXd x = VectorXd::Zero(residual.size());
+    VectorXd direction = residual;
+    double square = residual.squaredNorm();
+    // In exact arithmetic n steps are enough; rounding asks for some more, and what is left for another pass.
+    for (Index step = 0; step < 2 * residual.size() && !within_rounding(residual); ++step) {
+      const VectorXd image = normals_ * direction;
+      const double advance = square / image.squaredNorm();
+      x += advance * direction;
+      residual -= advance * (normals_.transpose() * image).cwiseProduct(pushing);
+      const double last = std::exchange(square, residual.squaredNorm());
+      direction = residual + (square / last) * direction;
+    }
+    return x;
+  }
+
+  bool within_rounding(const VectorXd& residual) const {
+    const VectorXd rounding = rounding_after(rounding_, absolute_normals_, impulse_);
+    return (residual.cwiseAbs().array() <= rounding.array()).all();
+  }
+
+  bool solved() const {
+    const VectorXd w = openings();
+    return within_rounding((impulse_.array() > 0.0).select(w, w.cwiseMin(0.0)));
+  }
+
+  const SparseMatrix<double>& normals_;
+  const SparseMatrix<double> absolute_normals_;
+  const VectorXd& start_;
+  const VectorXd& rounding_;
+  VectorXd impulse_;
+  VectorXd moved_;  ///< B λ
+};
+
+}  // namespace
+
+Complementary solve_by_pivoting(const SparseMatrix<double>& normals, const VectorXd& w,
+                                const VectorXd& rounding) {
+  return DualActiveSet(normals, w, rounding).solve();
+}
+
+Complementary solve_by_sweeps(const SparseMatrix<double>& normals, const VectorXd& w,
+                              const VectorXd& rounding) {
+  return SweepsAndSubspace(normals, w, rounding).solve();
+}
+
+Complementary solve_complementarity(const SparseMatrix<double>& normals, const VectorXd& w,
+                                    const VectorXd& rounding) {
+  return w.size() <= kMostPivoted ? solve_by_pivoting(normals, w, rounding)
+                                  : solve_by_sweeps(normals, w, rounding);
+}
+
+}  // namespace carom
