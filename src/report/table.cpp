@@ -44,6 +44,19 @@ std::string run_row(const RunComparison& result, bool color) {
                             short_number(result.run.cpu_seconds * 1e3));
 }
 
+/// What an engine that adapts to the scene has chosen: its evolver, and how it finds pairs.
+std::string choice_row(const Run& run) {
+  const auto word = [&run](const char* name) -> std::string {
+    const auto found = run.settings.find(name);
+    if (found == run.settings.end() || !std::holds_alternative<std::string>(found->second)) return {};
+    return std::get<std::string>(found->second);
+  };
+  if (word("evolver").empty()) return {};
+  const std::string pairs = word("broad_phase");
+  return fmt::format("  {} ran its evolver {}{}\n", run.label(), word("evolver"),
+                     pairs.empty() ? "" : fmt::format(", pairs by {}", pairs));
+}
+
 }  // namespace
 
 std::string results_table(const Results& results, bool color) {
@@ -57,6 +70,7 @@ std::string results_table(const Results& results, bool color) {
     text += fmt::format("  {:<18} {:<11} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "", "", "m", "relative",
                         "relative", "/ radius", "ms");
     for (const RunComparison& run : scene.runs) text += run_row(run, color);
+    for (const RunComparison& run : scene.runs) text += choice_row(run.run);
     text += "\n";
   }
   for (const MissingEngine& engine : results.missing) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/account.h"
+#include "carom/laws/frictionless.h"
 #include "carom/plane.h"
 
 namespace carom {
@@ -42,6 +44,33 @@ inline double draw(const Barrier& barrier, std::size_t ball, std::uint32_t meeti
   const std::uint64_t state = mixed(mixed(barrier.seed + kGolden) + ball) + meeting * kGolden;
   return static_cast<double>(mixed(state) >> 11U) * 0x1p-53;
 }
+
+/// The barriers of a scene, and how often each ball has met one.
+template <int Dim>
+class Barriers {
+ public:
+  explicit Barriers(const Scenario& scene)
+      : barriers_(scene.barriers), meetings_(scene.barriers.empty() ? 0 : scene.balls.size(), 0) {}
+
+  /// A ball that approaches this face passes, or is reflected.
+  void meet(World<Dim>& world, std::size_t ball, const Plane<Dim>& face, Account<Dim>& account) {
+    const Barrier& barrier = barriers_[static_cast<std::size_t>(face.barrier)];
+    const double mass = 1.0 / world.inverse_mass[ball];
+    const double v_n = face.normal.dot(world.velocity[ball]);
+    if (draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n)) {
+      const Vec<Dim> way = -2.0 * (face.depth + world.radius[ball]) * face.normal;
+      world.position.set(ball, world.position[ball] + way);
+      account.book_move(way, mass * world.velocity[ball]);
+    } else {
+      const Contact mirror;  // elastic and smooth
+      account.book(world.position[ball], Frictionless::on_wall<Dim>(world, ball, face.normal, mirror));
+    }
+  }
+
+ private:
+  std::vector<Barrier> barriers_;
+  std::vector<std::uint32_t> meetings_;  ///< of each ball; empty without barriers
+};
 
 template <int Dim>
 void add_barriers(const Scenario& scene, std::vector<Plane<Dim>>& planes) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "carom/account.h"
 #include "carom/flight.h"
 #include "carom/world.h"
 
@@ -40,8 +41,8 @@ class Flights {
   std::uint32_t stamp(std::size_t ball) const { return stamp_[ball]; }
   /// What the strongest acceleration gives in a step, m/s.
   double field_speed() const { return field_speed_; }
-  Tally& tally() { return tally_; }
-  const Tally& tally() const { return tally_; }
+  Account<Dim>& account() { return account_; }
+  const Account<Dim>& account() const { return account_; }
 
   /// The columns that statics changes: accelerations m/s² and rad/s².
   VectorColumn<Dim>& accelerations() { return acceleration_; }
@@ -131,15 +132,6 @@ class Flights {
     return world_.inverse_mass[ball] * model_->yield(world_, ball, left_s(ball));
   }
 
-  // --- the account of walls and immovable balls, about the origin
-
-  /// An impulse on the ball, N s, that acts at `arm` from its centre.
-  void book_impulse(std::size_t ball, const Vec<Dim>& impulse, const Vec<Dim>& arm) {
-    const Vec3 wide = widened<Dim>(impulse);
-    tally_.external_impulse += wide;
-    tally_.external_angular_impulse += widened<Dim>(world_.position[ball] + arm).cross(wide);
-  }
-
   /// From now on the ball bears a further force, N, that acts at `arm` from its centre.
   void bear(std::size_t ball, const Vec<Dim>& force, const Vec<Dim>& arm) {
     force_.set(ball, force_[ball] + force);
@@ -157,14 +149,14 @@ class Flights {
     const Motion<Dim> m = motion(ball);
     const Vec3 force = widened<Dim>(force_[ball]);
     const Vec<Dim> path_integral = tau * (m.x + (0.5 * tau) * m.v + (tau * tau / 6.0) * m.a);
-    tally_.external_impulse += tau * force;
-    tally_.external_angular_impulse += widened<Dim>(path_integral).cross(force);
-    if constexpr (kTurning) tally_.external_angular_impulse += tau * widened_spin<Dim>(torque_[ball]);
+    account_.tally.external_impulse += tau * force;
+    account_.tally.external_angular_impulse += widened<Dim>(path_integral).cross(force);
+    if constexpr (kTurning) account_.tally.external_angular_impulse += tau * widened_spin<Dim>(torque_[ball]);
   }
 
   World<Dim> world_;
   std::unique_ptr<Flight<Dim>> model_;
-  Tally tally_;
+  Account<Dim> account_;
   double step_s_ = 0.0;
   double field_speed_ = 0.0;
   std::vector<double> clock_;  ///< s, from the start of the step: where position and velocity stand

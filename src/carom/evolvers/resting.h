@@ -124,7 +124,7 @@ class Resting {
       solver_.solve(world, world.velocity, world.spin, response, tolerance());
       for (const std::uint32_t ball : members_) reach_.widen(ball);
     }
-    if (impact_) ++flights_.tally().impacts;
+    if (impact_) ++flights_.account().tally.impacts;
     for (const std::uint32_t ball : members_) flights_.coast(ball);
     for (const Kept& contact : solver_.contacts()) {
       book(contact);
@@ -341,7 +341,7 @@ class Resting {
     for (const Kept& contact : solver_.contacts()) {
       impact = impact || Solver::opening(contact, world.velocity) < -slow() - rounding_;
     }
-    if (impact) ++flights_.tally().impacts;
+    if (impact) ++flights_.account().tally.impacts;
     solver_.solve(world, world.velocity, world.spin, response, tolerance());
     for (const Kept& contact : solver_.contacts()) book(contact);
   }
@@ -350,7 +350,7 @@ class Resting {
     const std::optional<double> sign = external(contact);
     if (!sign) return;
     const Vec<Dim> impulse = *sign * (contact.push * contact.normal + contact.drag);
-    flights_.book_impulse(contact.a, impulse, arm_of(contact));
+    flights_.account().book(world().position[contact.a] + arm_of(contact), impulse);
   }
 
   /// Statics for the rest of the step, or until a slip ends.

@@ -38,14 +38,13 @@ class StepEvolver final : public Simulation {
       : world_(scene.balls, scene.effects.spin),
         parts_(std::move(parts)),
         planes_(planes_of<kDim>(scene.walls)),
+        barriers_(scene),
         surface_(scene.ball_contact),
         wall_surface_(scene.wall_contact),
         acceleration_(Traits::kAccelerates ? world_.size() : 0) {
     if constexpr (Traits::kSheets) {
       add_slabs<kDim>(scene, planes_);
       add_barriers<kDim>(scene, planes_);
-      barriers_ = scene.barriers;
-      meetings_.assign(scene.barriers.empty() ? 0 : world_.size(), 0);
     }
   }
 
@@ -59,7 +58,7 @@ class StepEvolver final : public Simulation {
   }
 
   void snapshot(std::span<BallState> balls) const override { world_.snapshot(balls); }
-  Tally tally() const override { return tally_; }
+  Tally tally() const override { return account_.tally; }
 
   Settings settings() const override {
     return {{"evolver", std::string("step")},
@@ -145,8 +144,7 @@ class StepEvolver final : public Simulation {
     count(v_n, sweep);
     const Place impulse =
         Law::template between<kDim>(world_, touch.a, touch.b, normal, rebounding(surface_, v_n));
-    if (world_.inverse_mass[touch.a] == 0.0) book(touch.b, impulse, -world_.radius[touch.b] * normal);
-    if (world_.inverse_mass[touch.b] == 0.0) book(touch.a, -impulse, world_.radius[touch.a] * normal);
+    account_.book_pair(world_, touch.a, touch.b, normal, impulse);
     return true;
   }
 
@@ -156,26 +154,14 @@ class StepEvolver final : public Simulation {
     if (v_n >= -velocity_rounding(world_.velocity[touch.a].norm())) return false;
     count(v_n, sweep);
     if constexpr (Traits::kSheets) {
-      if (plane.barrier != kSolid) return hit_barrier(touch.a, plane, v_n);
+      if (plane.barrier != kSolid) {
+        barriers_.meet(world_, touch.a, plane, account_);
+        return true;
+      }
     }
     const Place impulse =
         Law::template on_wall<kDim>(world_, touch.a, plane.normal, rebounding(wall_surface_, v_n));
-    book(touch.a, impulse, -world_.radius[touch.a] * plane.normal);
-    return true;
-  }
-
-  bool hit_barrier(std::uint32_t ball, const Plane<kDim>& face, double v_n) {
-    const Barrier& barrier = barriers_[static_cast<std::size_t>(face.barrier)];
-    const double mass = 1.0 / world_.inverse_mass[ball];
-    if (draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n)) {
-      const Place way = -2.0 * (face.depth + world_.radius[ball]) * face.normal;
-      world_.position.set(ball, world_.position[ball] + way);
-      tally_.external_angular_impulse +=
-          widened<kDim>(way).cross(mass * widened<kDim>(world_.velocity[ball]));
-    } else {
-      const Contact mirror;  // elastic and smooth
-      book(ball, Frictionless::on_wall<kDim>(world_, ball, face.normal, mirror), Place::Zero());
-    }
+    account_.book(world_.position[touch.a] - world_.radius[touch.a] * plane.normal, impulse);
     return true;
   }
 
@@ -186,13 +172,7 @@ class StepEvolver final : public Simulation {
   }
 
   void count(double v_n, int sweep) {
-    if (sweep == 0 && -v_n > field_speed_) ++tally_.impacts;
-  }
-
-  void book(std::size_t ball, const Place& impulse, const Place& arm) {
-    const Vec3 wide = widened<kDim>(impulse);
-    tally_.external_impulse += wide;
-    tally_.external_angular_impulse += widened<kDim>(world_.position[ball] + arm).cross(wide);
+    if (sweep == 0 && -v_n > field_speed_) ++account_.tally.impacts;
   }
 
   // --- contacts that hang together, under a law for several at once
@@ -242,16 +222,7 @@ class StepEvolver final : public Simulation {
     }
     if (!approaching) return;
     parts_.cluster_law->resolve(world_, contacts_);
-    for (const ClosedContact<kDim>& contact : contacts_) {
-      const Place impulse = contact.impulse * contact.normal;
-      if (contact.wall) {
-        book(contact.a, impulse, Place::Zero());
-      } else if (world_.inverse_mass[contact.a] == 0.0) {
-        book(contact.b, impulse, Place::Zero());
-      } else if (world_.inverse_mass[contact.b] == 0.0) {
-        book(contact.a, -impulse, Place::Zero());
-      }
-    }
+    account_.book_contacts(world_, contacts_);
   }
 
   // --- position correction
@@ -283,18 +254,17 @@ class StepEvolver final : public Simulation {
   World<kDim> world_;
   Parts<kDim> parts_;
   std::vector<Plane<kDim>> planes_;
+  Barriers<kDim> barriers_;
   Contact surface_;
   Contact wall_surface_;
   VectorColumn<kDim> acceleration_;
   double field_speed_ = 0.0;  ///< m/s, what the strongest acceleration gives in a step
-  Tally tally_;
+  Account<kDim> account_;
 
   std::vector<BallPair> pairs_;
   std::vector<Touch> touches_;
   std::vector<std::uint32_t> root_;
   std::vector<ClosedContact<kDim>> contacts_;
-  std::vector<Barrier> barriers_;
-  std::vector<std::uint32_t> meetings_;  ///< with barriers, of each ball; empty without
 };
 
 }  // namespace carom

@@ -44,6 +44,7 @@ class ToiEvolver final : public Simulation {
         cluster_law_(std::move(parts.cluster_law)),
         planes_(planes_of<kDim>(scene.walls)),
         resting_(scene, flights_, reach_, planes_),
+        barriers_(scene),
         surface_(scene.ball_contact),
         wall_surface_(scene.wall_contact),
         most_flights_(most_flights(surface_.restitution)),
@@ -51,8 +52,6 @@ class ToiEvolver final : public Simulation {
     if constexpr (Traits::kSheets) {
       add_slabs<kDim>(scene, planes_);
       add_barriers<kDim>(scene, planes_);
-      barriers_ = scene.barriers;
-      meetings_.assign(scene.barriers.empty() ? 0 : flights_.size(), 0);
     }
   }
 
@@ -61,7 +60,7 @@ class ToiEvolver final : public Simulation {
   }
 
   void snapshot(std::span<BallState> balls) const override { world().snapshot(balls); }
-  Tally tally() const override { return flights_.tally(); }
+  Tally tally() const override { return flights_.account().tally; }
 
   Settings settings() const override {
     Settings settings = Rest::settings();
@@ -238,10 +237,9 @@ class ToiEvolver final : public Simulation {
     } else if (v_n < 0.0 && cluster_law_) {
       resolve_touching(meeting);
     } else if (v_n < 0.0) {
-      ++flights_.tally().impacts;
+      ++flights_.account().tally.impacts;
       const Place impulse = Law::template between<kDim>(flights_.world(), a, b, normal, surface_);
-      if (world().inverse_mass[a] == 0.0) flights_.book_impulse(b, impulse, -world().radius[b] * normal);
-      if (world().inverse_mass[b] == 0.0) flights_.book_impulse(a, -impulse, world().radius[a] * normal);
+      flights_.account().book_pair(world(), a, b, normal, impulse);
       begin_flights({a, b});
     }
   }
@@ -263,31 +261,17 @@ class ToiEvolver final : public Simulation {
     } else if (v_n < 0.0 && cluster_law_) {
       resolve_touching(meeting);
     } else if (v_n < 0.0) {
-      ++flights_.tally().impacts;
+      ++flights_.account().tally.impacts;
       const Place impulse = Law::template on_wall<kDim>(flights_.world(), ball, plane.normal, wall_surface_);
-      flights_.book_impulse(ball, impulse, -world().radius[ball] * plane.normal);
+      flights_.account().book(world().position[ball] - world().radius[ball] * plane.normal, impulse);
       begin_flights({ball});
     }
   }
 
-  /// The ball passes, or is reflected elastically.
   void resolve_barrier(std::uint32_t ball, const Plane<kDim>& face) {
-    const Barrier& barrier = barriers_[static_cast<std::size_t>(face.barrier)];
-    const double v_n = face.normal.dot(world().velocity[ball]);
-    if (v_n >= 0.0) return;
-    ++flights_.tally().impacts;
-    const double mass = 1.0 / world().inverse_mass[ball];
-    if (draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n)) {
-      const double way = 2.0 * (face.depth + world().radius[ball]);
-      flights_.world().position.set(ball, world().position[ball] - way * face.normal);
-      // The place moves, the momentum does not: only the momentum's moment about the origin does.
-      flights_.tally().external_angular_impulse +=
-          widened<kDim>(-way * face.normal).cross(mass * widened<kDim>(world().velocity[ball]));
-    } else {
-      const Contact mirror;  // elastic and smooth
-      const Place impulse = Frictionless::on_wall<kDim>(flights_.world(), ball, face.normal, mirror);
-      flights_.book_impulse(ball, impulse, Place::Zero());
-    }
+    if (face.normal.dot(world().velocity[ball]) >= 0.0) return;
+    ++flights_.account().tally.impacts;
+    barriers_.meet(flights_.world(), ball, face, flights_.account());
     begin_flights({ball});
   }
 
@@ -325,18 +309,9 @@ class ToiEvolver final : public Simulation {
     for (ClosedContact<kDim>& contact : touching_) {
       contact.restitution = contact.wall ? wall_surface_.restitution : surface_.restitution;
     }
-    ++flights_.tally().impacts;
+    ++flights_.account().tally.impacts;
     cluster_law_->resolve(flights_.world(), touching_);
-    for (const ClosedContact<kDim>& contact : touching_) {
-      const Place impulse = contact.impulse * contact.normal;
-      if (contact.wall) flights_.book_impulse(contact.a, impulse, Place::Zero());
-      if (!contact.wall && world().inverse_mass[contact.a] == 0.0) {
-        flights_.book_impulse(contact.b, impulse, Place::Zero());
-      }
-      if (!contact.wall && world().inverse_mass[contact.b] == 0.0) {
-        flights_.book_impulse(contact.a, -impulse, Place::Zero());
-      }
-    }
+    flights_.account().book_contacts(world(), touching_);
     const std::vector<std::uint32_t> hit = resting_.members();
     resting_.begin_flights_around(hit);
     expect_all_of(resting_.members());
@@ -349,6 +324,7 @@ class ToiEvolver final : public Simulation {
   std::unique_ptr<ClusterLaw<kDim>> cluster_law_;
   std::vector<Plane<kDim>> planes_;
   Rest resting_;
+  Barriers<kDim> barriers_;
   Contact surface_;
   Contact wall_surface_;
   std::uint32_t most_flights_;
@@ -357,8 +333,6 @@ class ToiEvolver final : public Simulation {
   std::vector<BallPair> pairs_;
   std::vector<std::uint32_t> near_;
   std::vector<ClosedContact<kDim>> touching_;
-  std::vector<Barrier> barriers_;
-  std::vector<std::uint32_t> meetings_;  ///< with barriers, of each ball; empty without
   std::priority_queue<Meeting, std::vector<Meeting>, std::greater<>> meetings_to_come_;
 };
 
