@@ -53,7 +53,7 @@ class CaromEngine final : public Engine {
         "rounding.",
         "Impacts at one moment are resolved one after the other, so what touching balls do depends on their "
         "order, unless the scene names a law for several contacts at once.",
-        "Where balls still chatter after 16 flights in a step, its rest is taken in one piece, of first "
+        "Where balls still chatter after several flights in a step, its rest is taken in one piece, of first "
         "order: "
         "piles that form, and inelastic collapse.",
         "Friction between balls that lie on each other follows the contacts' normals once a step.",

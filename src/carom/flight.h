@@ -117,8 +117,8 @@ class FlightModel final : public Flight<Dim> {
 
   Vec<Dim> field(const World<Dim>& world, std::size_t ball) const {
     Vec<Dim> a = Vec<Dim>::Zero();
-    const auto add = [&](const auto& effect) {
-      if constexpr (effect.kKind == EffectKind::field) a += effect.acceleration(world, ball);
+    const auto add = [&]<class Effect>(const Effect& effect) {
+      if constexpr (Effect::kKind == EffectKind::field) a += effect.acceleration(world, ball);
     };
     std::apply([&](const Effects&... effect) { (add(effect), ...); }, effects_);
     return a;
@@ -126,8 +126,8 @@ class FlightModel final : public Flight<Dim> {
 
   double damping_rate(const World<Dim>& world, std::size_t ball, const Vec<Dim>& velocity) const {
     double rate = 0.0;
-    const auto add = [&](const auto& effect) {
-      if constexpr (effect.kKind == EffectKind::damping) rate += effect.damping_rate(world, ball, velocity);
+    const auto add = [&]<class Effect>(const Effect& effect) {
+      if constexpr (Effect::kKind == EffectKind::damping) rate += effect.damping_rate(world, ball, velocity);
     };
     std::apply([&](const Effects&... effect) { (add(effect), ...); }, effects_);
     return rate;
@@ -135,8 +135,8 @@ class FlightModel final : public Flight<Dim> {
 
   Spin<Dim> turning_rate(const World<Dim>& world, std::size_t ball) const {
     Spin<Dim> rate = Spin<Dim>::Zero();
-    const auto add = [&](const auto& effect) {
-      if constexpr (effect.kKind == EffectKind::turning) rate += effect.turning_rate(world, ball);
+    const auto add = [&]<class Effect>(const Effect& effect) {
+      if constexpr (Effect::kKind == EffectKind::turning) rate += effect.turning_rate(world, ball);
     };
     std::apply([&](const Effects&... effect) { (add(effect), ...); }, effects_);
     return rate;

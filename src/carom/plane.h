@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -41,7 +42,8 @@ void add_faces(const Sheet& sheet, std::int32_t barrier, std::vector<Plane<Dim>>
   const Vec<Dim> normal = flattened<Dim>(sheet.normal);
   const double half = 0.5 * sheet.thickness;
   planes.push_back({normal, sheet.offset + half, half, barrier});
-  planes.push_back({-normal, half - sheet.offset, half, barrier});
+  // A ball right in the middle is on one side only.
+  planes.push_back({-normal, half - sheet.offset, std::nextafter(half, 0.0), barrier});
 }
 
 }  // namespace carom

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "carom/account.h"
@@ -20,16 +22,16 @@ namespace carom {
 ///
 /// @param v_n_mps  the velocity along the normal
 inline double transmission(const Barrier& barrier, double mass_kg, double v_n_mps) {
-  const double energy = 0.5 * mass_kg * v_n_mps * v_n_mps;
-  const double above = energy - barrier.height;
   if (barrier.height == 0.0) return 1.0;
-  if (energy == 0.0) return 0.0;
+  if (v_n_mps == 0.0) return 0.0;
+  const double above = 0.5 * mass_kg * v_n_mps * v_n_mps - barrier.height;
   const double a_over_hbar = barrier.thickness / barrier.hbar;
-  // All three are one: V² a² m s(x)/(2 E ħ²), s = (sinh x/x)², 1, (sin x/x)², with x = a √(2 m |E - V|)/ħ.
-  const double x = a_over_hbar * std::sqrt(2.0 * mass_kg * std::abs(above));
+  // All three are one: 1/T - 1 = (V a s(x)/(ħ v_n))², s = sinh x/x, 1, sin x/x, with x = a √(2 m |E - V|)/ħ.
+  const double x =
+      std::min(a_over_hbar * std::sqrt(2.0 * mass_kg * std::abs(above)), std::numeric_limits<double>::max());
   const double ratio = x == 0.0 ? 1.0 : (above < 0.0 ? std::sinh(x) : std::sin(x)) / x;
-  const double amplitude = barrier.height * a_over_hbar * ratio;
-  return 1.0 / (1.0 + 0.5 * mass_kg / energy * amplitude * amplitude);
+  const double amplitude = barrier.height * a_over_hbar * ratio / v_n_mps;
+  return 1.0 / (1.0 + amplitude * amplitude);
 }
 
 /// A number in [0, 1) that belongs to the n-th time a ball meets this barrier, whatever else happens in

@@ -57,16 +57,21 @@ class ContactSolver {
     }
   }
 
-  /// Changes u and w until (1) and (2) hold. @pre the pushes that stand in contacts() have acted.
+  /// Changes u and w until (1) and (2) hold; returns false where they do not come to hold. Contacts whose
+  /// direction of slip is given may have no solution at all (P. Painlevé's paradox). @pre the pushes that
+  /// stand in contacts() have acted.
   /// @param response   of a ball, 1/kg: what a unit of push changes of its u
   /// @param tolerance  in u's unit: sweeps end once none changes a u_n by more, or by more than the pushes
   /// round
   template <class Response>
-  void solve(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
+  bool solve(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
              const Response& response, double tolerance) {
     double largest_change = std::numeric_limits<double>::infinity();
     double rounding = tolerance;
+    double first_change = 0.0;
     for (int sweep = 0; sweep < kMostSweeps && largest_change > rounding; ++sweep) {
+      if (sweep == 1) first_change = largest_change;
+      if (!(largest_change <= kDiverged * first_change) && sweep > 1) return false;
       largest_change = 0.0;
       rounding = tolerance;
       for (Contact& contact : contacts_) {
@@ -81,7 +86,9 @@ class ContactSolver {
     }
     if constexpr (!kFriction) {
       if (largest_change > rounding) solve_directly(world, u, w, response, rounding);
+      return true;
     }
+    return largest_change <= rounding;
   }
 
   /// How fast the contact opens, in u's unit.
@@ -101,6 +108,8 @@ class ContactSolver {
   /// From the pushes of the step before, few sweeps do. Without friction what they leave is solved directly;
   /// Coulomb's cone is left to them alone.
   static constexpr int kMostSweeps = kFriction ? 2000 : 64;
+  /// Sweeps that change more than the first by this factor do not converge.
+  static constexpr double kDiverged = 1e3;
   /// Of a push, in units of ε: up to twelve neighbours push as much on each ball of a contact.
   static constexpr double kRoundings = 4.0;
 

@@ -13,7 +13,7 @@
 
 #include "carom/evolvers/contact_solver.h"
 #include "carom/evolvers/flights.h"
-#include "carom/evolvers/reach.h"
+#include "carom/evolvers/neighbours.h"
 #include "carom/laws/cluster_law.h"
 #include "carom/plane.h"
 #include "carom/time_of_impact.h"
@@ -63,10 +63,10 @@ class Resting {
     double time_s;
   };
 
-  Resting(const Scenario& scene, Balls& flights, Reach<Dim, Balls>& reach,
+  Resting(const Scenario& scene, Balls& flights, Neighbours<Dim, Balls>& neighbours,
           const std::vector<Plane<Dim>>& planes)
       : flights_(flights),
-        reach_(reach),
+        neighbours_(neighbours),
         planes_(planes),
         friction_(scene.ball_contact.friction),
         wall_friction_(scene.wall_contact.friction),
@@ -86,6 +86,8 @@ class Resting {
     const double step_s = flights_.step_s();
     if (restitution < 1.0 && -v_n <= unseen(place_m)) return true;
     if (a_n * step_s >= -rounding) return false;
+    // A rough impact without rebound still has a law for what it does along the surface.
+    if (kFriction && -v_n > flights_.field_speed() + rounding) return false;
     const double rebound = std::max(-v_n - rounding, 0.0) * restitution;
     const double share = restitution < 1.0 ? kRestShare : kElasticRestShare;
     return rebound == 0.0 || 2.0 * rebound < share * step_s * -a_n;
@@ -100,8 +102,19 @@ class Resting {
       return;
     }
     solve_velocities();
+    // What opens does not push any more.
+    std::erase_if(solver_.contacts(), [this](const Kept& contact) {
+      return Solver::opening(contact, flights_.world().velocity) > still();
+    });
     for (const std::uint32_t ball : members_) flights_.begin_flight(ball);
-    if constexpr (kAccelerates) solve_accelerations();
+    if constexpr (kAccelerates) {
+      if (!solve_accelerations()) {
+        // Velocities always have a solution.
+        for (const std::uint32_t ball : members_) flights_.begin_flight(ball);
+        join_crowd(seed, time_s);
+        return;
+      }
+    }
     for (const Kept& contact : solver_.contacts()) {
       if (stays_closed(contact)) hold(contact.a, contact.b, contact.wall);
     }
@@ -121,8 +134,8 @@ class Resting {
     const auto response = [this](std::uint32_t ball) { return inverse_mass(ball); };
     for (std::size_t next = 0; next < members_.size(); ++next) enter_crowd(members_[next], time_s);
     for (int round = 0; round < kMostRounds && add_crowd_contacts(seed, time_s); ++round) {
-      solver_.solve(world, world.velocity, world.spin, response, tolerance());
-      for (const std::uint32_t ball : members_) reach_.widen(ball);
+      solver_.solve(world, world.velocity, world.spin, response, crowd_tolerance());
+      for (const std::uint32_t ball : members_) neighbours_.widen(ball);
     }
     if (impact_) ++flights_.account().tally.impacts;
     for (const std::uint32_t ball : members_) flights_.coast(ball);
@@ -165,13 +178,14 @@ class Resting {
   void begin_flights_around(std::span<const std::uint32_t> hit) {
     begin_gathering();
     for (const std::uint32_t ball : hit) {
-      if (mark_[ball] == marks_) continue;
+      // An immovable ball flies on as it did, and what lies on it lies on.
+      if (mark_[ball] == marks_ || inverse_mass(ball) == 0.0) continue;
       mark_[ball] = marks_;
       members_.push_back(ball);
     }
     const double time_s = flights_.clock(members_.front());
     for (std::size_t next = 0; !held_.empty() && next < members_.size(); ++next) {
-      reach_.find_near(members_[next], near_);
+      neighbours_.find_near(members_[next], near_);
       for (const std::uint32_t other : near_) {
         if (is_held(members_[next], other, false)) join(other, time_s);
       }
@@ -208,6 +222,8 @@ class Resting {
   static constexpr double kElasticRestShare = 1e-6;
   /// Of what the fields give: what statics may leave.
   static constexpr double kStaticsShare = 1e-14;
+  /// The same of a crowd: at h = 1/240 s a closing speed of 4e-12 m/s, an overlap of 2e-14 m.
+  static constexpr double kCrowdLeaves = 1e-10;
   /// Of a gap: how far a crowd may close it. Gaps closed to the last bit would be met again by rounding.
   static constexpr double kCrowdShare = 1.0 - 1e-6;
   /// Rounds in which a crowd takes in balls that it pushes against others. One ring of a pile is one round.
@@ -252,7 +268,7 @@ class Resting {
         const double gap = planes_[plane].gap(world().position[ball], world().radius[ball]);
         const double v_n = normal.dot(world().velocity[ball]);
         if (is_seed || is_held(ball, plane, true) || closed(gap, v_n, world().position[ball])) {
-          solver_.add({ball, plane, true, normal, wall_friction_});
+          solver_.add({ball, plane, true, normal, friction_of(planes_[plane])});
         }
       }
       find_near_sorted(ball);
@@ -292,9 +308,12 @@ class Resting {
   /// A gap below this, m, is rounding: of the coordinates, and of the times at which they were computed.
   static double touch_rounding(const Place& x) { return 64.0 * kEpsilon * x.cwiseAbs().maxCoeff(); }
 
+  /// The face of a barrier is smooth.
+  double friction_of(const Plane<Dim>& plane) const { return plane.barrier == kSolid ? wall_friction_ : 0.0; }
+
   /// The order of a broad phase is its own; the order of the contacts decides the last bits.
   void find_near_sorted(std::uint32_t ball) {
-    reach_.find_near(ball, near_);
+    neighbours_.find_near(ball, near_);
     std::sort(near_.begin(), near_.end());
   }
 
@@ -332,6 +351,9 @@ class Resting {
     return std::max({rounding_, kStaticsShare * flights_.field_speed(), kRestShare * unseen(place_m_)});
   }
 
+  /// The same for a crowd, which is of first order anyway.
+  double crowd_tolerance() const { return std::max(tolerance(), kCrowdLeaves * flights_.field_speed()); }
+
   double inverse_mass(std::uint32_t ball) const { return world().inverse_mass[ball]; }
 
   void solve_velocities() {
@@ -353,8 +375,8 @@ class Resting {
     flights_.account().book(world().position[contact.a] + arm_of(contact), impulse);
   }
 
-  /// Statics for the rest of the step, or until a slip ends.
-  void solve_accelerations() {
+  /// Statics for the rest of the step, or until a slip ends. Returns false where there is none.
+  bool solve_accelerations() {
     const World<Dim>& world = flights_.world();
     const auto response = [this](std::uint32_t ball) { return flights_.response(ball); };
     for (Kept& contact : solver_.contacts()) {
@@ -366,14 +388,17 @@ class Resting {
       }
     }
     solver_.start(world, flights_.accelerations(), flights_.spin_accelerations(), response);
-    solver_.solve(world, flights_.accelerations(), flights_.spin_accelerations(), response,
-                  tolerance() / flights_.step_s());
+    if (!solver_.solve(world, flights_.accelerations(), flights_.spin_accelerations(), response,
+                       tolerance() / flights_.step_s())) {
+      return false;
+    }
     for (const Kept& contact : solver_.contacts()) {
       learned_[key(contact.a, contact.b, contact.wall)] = contact.push;
       const std::optional<double> sign = external(contact);
       if (!sign) continue;
       flights_.bear(contact.a, *sign * (contact.push * contact.normal + contact.drag), arm_of(contact));
     }
+    return true;
   }
 
   double known_push(std::uint64_t contact) const {
@@ -450,7 +475,7 @@ class Resting {
       for (std::uint32_t plane = 0; plane < planes_.size(); ++plane) {
         if (!planes_[plane].faces(world().position[ball])) continue;
         const double gap = planes_[plane].gap(world().position[ball], world().radius[ball]);
-        const Kept contact = {ball, plane, true, planes_[plane].normal, wall_friction_};
+        const Kept contact = {ball, plane, true, planes_[plane].normal, friction_of(planes_[plane])};
         added = add_to_crowd(seed, contact, gap, contact.normal.dot(world().velocity[ball]), time_s) || added;
       }
       find_near_sorted(ball);
@@ -489,7 +514,7 @@ class Resting {
     crowd_[ball] = steps_;
     entering_.assign(1, ball);
     for (std::size_t next = 0; !held_.empty() && next < entering_.size(); ++next) {
-      reach_.find_near(entering_[next], leaning_);
+      neighbours_.find_near(entering_[next], leaning_);
       std::sort(leaning_.begin(), leaning_.end());
       for (const std::uint32_t other : leaning_) {
         if (in_crowd(other) || !is_held(entering_[next], other, false) || !join(other, time_s)) continue;
@@ -524,7 +549,7 @@ class Resting {
   using Solver = ContactSolver<Dim, kFriction>;
 
   Balls& flights_;
-  Reach<Dim, Balls>& reach_;
+  Neighbours<Dim, Balls>& neighbours_;
   const std::vector<Plane<Dim>>& planes_;
   double friction_;
   double wall_friction_;

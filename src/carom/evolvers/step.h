@@ -150,6 +150,9 @@ class StepEvolver final : public Simulation {
 
   bool hit_plane(const Touch& touch, int sweep) {
     const Plane<kDim>& plane = planes_[touch.b];
+    if constexpr (Traits::kSheets) {
+      if (!plane.faces(world_.position[touch.a])) return false;  // it has passed in an earlier sweep
+    }
     const double v_n = plane.normal.dot(world_.velocity[touch.a]);
     if (v_n >= -velocity_rounding(world_.velocity[touch.a].norm())) return false;
     count(v_n, sweep);

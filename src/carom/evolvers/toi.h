@@ -40,10 +40,10 @@ class ToiEvolver final : public Simulation {
 
   ToiEvolver(const Scenario& scene, Parts<kDim> parts)
       : flights_(scene, std::move(parts.flight)),
-        reach_(flights_, std::move(parts.broad_phase)),
+        neighbours_(flights_, std::move(parts.broad_phase)),
         cluster_law_(std::move(parts.cluster_law)),
         planes_(planes_of<kDim>(scene.walls)),
-        resting_(scene, flights_, reach_, planes_),
+        resting_(scene, flights_, neighbours_, planes_),
         barriers_(scene),
         surface_(scene.ball_contact),
         wall_surface_(scene.wall_contact),
@@ -67,7 +67,7 @@ class ToiEvolver final : public Simulation {
     settings["evolver"] = std::string("toi");
     settings["law"] = std::string(Law::kName);
     settings["touching_law"] = std::string(cluster_law_ ? cluster_law_->name() : "sequential");
-    settings["broad_phase"] = std::string(reach_.name());
+    settings["broad_phase"] = std::string(neighbours_.name());
     return settings;
   }
 
@@ -75,6 +75,10 @@ class ToiEvolver final : public Simulation {
   using Balls = Flights<kDim, Traits::kAccelerates, Law::kFriction>;
   using Rest = Resting<kDim, Traits::kAccelerates, Law::kFriction>;
   using Place = Vec<kDim>;
+
+  /// Of the step: impacts of a ball that follow each other sooner may be a chatter. A bounce with e < 1 gets
+  /// there, elastic ones between lossy ones do not.
+  static constexpr double kRapidShare = 1e-3;
 
   /// Contacts resolved in a step after which something must be wrong: more than any count of elastic impacts
   /// asks for (Galperin's are 3.1 million at a mass ratio of 10¹²).
@@ -114,7 +118,7 @@ class ToiEvolver final : public Simulation {
   void step(double step_s) {
     flights_.begin_step(step_s);
     resting_.begin_step();
-    reach_.begin_step();
+    neighbours_.begin_step();
     find_meetings();
     resolve_meetings();
     flights_.finish_step();
@@ -122,8 +126,9 @@ class ToiEvolver final : public Simulation {
 
   void find_meetings() {
     meetings_to_come_ = {};
-    reach_.find_pairs(pairs_);
+    neighbours_.find_pairs(pairs_);
     for (const auto& [i, j] : pairs_) expect_pair(i, j);
+    if (planes_.empty()) return;
     for (std::size_t i = 0; i < flights_.size(); ++i) expect_planes(i);
   }
 
@@ -183,7 +188,7 @@ class ToiEvolver final : public Simulation {
   }
 
   void expect_planes(std::size_t ball) {
-    if (world().inverse_mass[ball] == 0.0) return;
+    if (planes_.empty() || world().inverse_mass[ball] == 0.0) return;
     const Motion<kDim> now = flights_.motion(ball);
     const double rounding = velocity_rounding(now.v.norm() + flights_.field_speed());
     for (std::size_t k = 0; k < planes_.size(); ++k) {
@@ -206,9 +211,9 @@ class ToiEvolver final : public Simulation {
   }
 
   void expect_all(std::size_t ball) {
-    reach_.widen(ball);
+    neighbours_.widen(ball);
     expect_planes(ball);
-    reach_.find_near(ball, near_);
+    neighbours_.find_near(ball, near_);
     for (const std::uint32_t other : near_) expect_pair(ball, other);
   }
 
@@ -220,16 +225,23 @@ class ToiEvolver final : public Simulation {
   // A meeting is expected only where balls approach by more than rounding, and resolved whatever little
   // approach is left when its time comes: between the two thresholds nothing can be expected again and again.
 
+  /// Whether the ball's last event was just before. Immovable ones have none of their own.
+  bool is_rapid(const Meeting& meeting, std::uint32_t ball) const {
+    return world().inverse_mass[ball] == 0.0 ||
+           meeting.time - flights_.clock(ball) <= kRapidShare * flights_.step_s();
+  }
+
   void resolve_pair(const Meeting& meeting) {
     const std::uint32_t a = meeting.a;
     const std::uint32_t b = meeting.b;
+    const bool rapid = is_rapid(meeting, a) && is_rapid(meeting, b);
     flights_.fly_to(a, meeting.time);
     flights_.fly_to(b, meeting.time);
     const Place normal = normal_between<kDim>(world().position[a], world().position[b]);
     const double v_n = normal.dot(world().velocity[b] - world().velocity[a]);
     const double a_n = normal.dot(flights_.acceleration(b) - flights_.acceleration(a));
     const double speeds = world().velocity[a].norm() + world().velocity[b].norm();
-    const bool chatters = std::max(flights_.stamp(a), flights_.stamp(b)) >= most_flights_ ||
+    const bool chatters = (rapid && std::max(flights_.stamp(a), flights_.stamp(b)) >= most_flights_) ||
                           resting_.in_crowd(a) || resting_.in_crowd(b);
     const double place_m = world().position[a].cwiseAbs().maxCoeff();
     if (chatters || resting_.comes_to_rest(v_n, a_n, surface_.restitution, speeds, place_m)) {
@@ -247,15 +259,19 @@ class ToiEvolver final : public Simulation {
   void resolve_plane(const Meeting& meeting) {
     const std::uint32_t ball = meeting.a;
     const Plane<kDim>& plane = planes_[meeting.b];
+    const bool rapid = is_rapid(meeting, ball);
     flights_.fly_to(ball, meeting.time);
     const double v_n = plane.normal.dot(world().velocity[ball]);
     const double a_n = plane.normal.dot(flights_.acceleration(ball));
-    const bool chatters = flights_.stamp(ball) >= most_wall_flights_ || resting_.in_crowd(ball);
-    if constexpr (Traits::kSheets) {
-      if (plane.barrier != kSolid) return resolve_barrier(ball, plane);
-    }
+    const bool chatters = (rapid && flights_.stamp(ball) >= most_wall_flights_) || resting_.in_crowd(ball);
     const double speed = world().velocity[ball].norm();
     const double place_m = world().position[ball].cwiseAbs().maxCoeff();
+    if constexpr (Traits::kSheets) {
+      if (plane.barrier != kSolid) {
+        const bool rests = resting_.in_crowd(ball) || resting_.comes_to_rest(v_n, a_n, 1.0, speed, place_m);
+        return rests ? come_to_rest(meeting, false) : resolve_barrier(ball, plane);
+      }
+    }
     if (chatters || resting_.comes_to_rest(v_n, a_n, wall_surface_.restitution, speed, place_m)) {
       come_to_rest(meeting, chatters);
     } else if (v_n < 0.0 && cluster_law_) {
@@ -320,7 +336,7 @@ class ToiEvolver final : public Simulation {
   static constexpr std::uint32_t kEndless = std::numeric_limits<std::uint32_t>::max();
 
   Balls flights_;
-  Reach<kDim, Balls> reach_;
+  Neighbours<kDim, Balls> neighbours_;
   std::unique_ptr<ClusterLaw<kDim>> cluster_law_;
   std::vector<Plane<kDim>> planes_;
   Rest resting_;

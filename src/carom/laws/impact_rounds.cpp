@@ -14,11 +14,11 @@ using Eigen::VectorXd;
 
 /// Rounds after which balls are taken for wedged. A light ball between a wall and a heavy one needs
 /// π/2 √(M/m) of them, Galperin's count: enough for masses 10⁷ apart.
-constexpr int kMostRounds = 10'000;
+constexpr int kMostImpactRounds = 10'000;
 
 /// Roundings of an opening velocity, each ε of all that the velocities of both balls were changed by: twelve
 /// impulses on a ball, the dot product, and the impulses themselves.
-constexpr double kRoundings = 16.0;
+constexpr double kRoundingsOfOpening = 16.0;
 
 /// Some of the closed contacts, with what (1) asks of each.
 struct Round {
@@ -104,7 +104,7 @@ class Cluster {
 
   double rounding(const ClosedContact<Dim>& contact) const {
     const double speeds = speed_[number_of(contact.a)] + (contact.wall ? 0.0 : speed_[number_of(contact.b)]);
-    return kRoundings * kEpsilon * speeds;
+    return kRoundingsOfOpening * kEpsilon * speeds;
   }
 
   /// Of a ball among those of the cluster.
@@ -158,7 +158,7 @@ class Cluster {
 template <int Dim>
 void resolve_in_rounds(World<Dim>& world, std::span<ClosedContact<Dim>> contacts, AtRest at_rest) {
   Cluster<Dim> cluster(world, contacts);
-  for (int count = 0; count < kMostRounds; ++count) {
+  for (int count = 0; count < kMostImpactRounds; ++count) {
     const Round round = cluster.next_round(at_rest);
     if (!round.approaches) return;
     cluster.resolve(round);

@@ -2,6 +2,7 @@
 
 #include "core/files.h"
 #include "report/page/chapters.h"
+#include "report/page/costs.h"
 #include "report/page/html.h"
 #include "report/page/overview.h"
 #include "report/page/scene_section.h"
@@ -23,13 +24,19 @@ std::string head(const std::filesystem::path& web) {
          "</script>\n</head>\n";
 }
 
-void add_navigation(Node body, const Results& results) {
+/// Counted by tests/benchmarks/run, and not there where that never ran.
+std::filesystem::path costs_file(const std::filesystem::path& web) {
+  return web.parent_path() / "measured/costs.json";
+}
+
+void add_navigation(Node body, const Results& results, bool with_costs) {
   add(body, "a", {{"class", "skip"}, {"href", "#overview"}}, "Skip to the results");
   Node bar = add(body, "nav", {{"aria-label", "Parts of this page"}});
   add(bar, "a", {{"href", "#overview"}}, "All scenes");
   if (has_hard_cases(results)) add(bar, "a", {{"href", "#survival"}}, "Hard cases");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
+  if (with_costs) add(bar, "a", {{"href", "#costs"}}, "What effects cost");
 }
 
 }  // namespace
@@ -38,13 +45,14 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   const Legend legend(results.scenes);
   pugi::xml_document document;
   Node body = document.append_child("body");
-  add_navigation(body, results);
+  add_navigation(body, results, std::filesystem::exists(costs_file(web)));
   Node main = add(body, "main");
   add_overview(main, results, legend);
   add_survival(main, results, legend);
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
+  add_costs(main, costs_file(web));
   add_footer(body, results);
   return head(web) + markup(body) + "\n</html>\n";
 }

@@ -9,9 +9,9 @@ namespace carom {
 
 /// How far each ball may get in a step, and so which balls may meet: the broad phase, and what it looks at.
 template <int Dim, class Balls>
-class Reach {
+class Neighbours {
  public:
-  Reach(const Balls& flights, std::unique_ptr<BroadPhase<Dim>> broad_phase)
+  Neighbours(const Balls& flights, std::unique_ptr<BroadPhase<Dim>> broad_phase)
       : flights_(flights),
         broad_phase_(std::move(broad_phase)),
         start_(flights.size()),
