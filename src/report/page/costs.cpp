@@ -57,10 +57,6 @@ std::string rounded(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : number(value);
 }
 
-void add_number(Node row, const std::string& text) {
-  add(row, "td", {{"class", "number"}}, text);
-}
-
 /// Two columns for each evolver, and a row for each scene; what an evolver does not take stays open.
 template <class First, class Second>
 void add_scene_table(Node parent, const std::string& caption, const Json& rows, const Heading& second_heading,

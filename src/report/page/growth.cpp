@@ -20,8 +20,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kWidth_px = 330.0;
-constexpr double kHeight_px = 220.0;
+constexpr double kGrowthWidth_px = 330.0;
+constexpr double kGrowthHeight_px = 220.0;
 constexpr int kBallTicks = 4;
 constexpr int kWorkTicks = 10;
 
@@ -45,10 +45,6 @@ std::vector<double> ball_counts(const Json& growths) {
   std::sort(counts.begin(), counts.end());
   counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
   return counts;
-}
-
-void add_number(Node row, const std::string& text) {
-  add(row, "td", {{"class", "number"}}, text);
 }
 
 void add_work(Node row, const Json& growth, double balls) {
@@ -129,8 +125,8 @@ void add_growth_plot(Node parent, const std::vector<Json>& growths) {
   add_key(figure, growths);
   const Canvas canvas =
       add_canvas(figure, {title, "The numbers are in the table."}, axis_over(lines, &Point::x),
-                 axis_over(lines, &Point::y), kWidth_px, kHeight_px, {kBallTicks, "balls, as a power of ten"},
-                 {kWorkTicks, "operations, as a power of ten"});
+                 axis_over(lines, &Point::y), kGrowthWidth_px, kGrowthHeight_px,
+                 {kBallTicks, "balls, as a power of ten"}, {kWorkTicks, "operations, as a power of ten"});
   for (std::size_t i = 0; i < lines.size(); ++i) {
     Polyline drawn;
     for (const Point& point : lines[i]) drawn.push_back(canvas.at(point.x, point.y));

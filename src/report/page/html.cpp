@@ -100,6 +100,10 @@ Node add_table(Node parent, const char* look, const std::string& caption,
   return add(table, "tbody");
 }
 
+void add_number(Node row, const std::string& text) {
+  add(row, "td", {{"class", "number"}}, text);
+}
+
 Node add_details(Node parent, const std::string& summary) {
   Node details = add(parent, "details");
   add(details, "summary", {}, summary);

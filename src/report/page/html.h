@@ -38,6 +38,9 @@ struct Heading {
 Node add_table(Node parent, const char* look, const std::string& caption,
                const std::vector<Heading>& headings);
 
+/// A cell of a table that holds a number.
+void add_number(Node row, const std::string& text);
+
 /// A closed box with a summary that opens it.
 Node add_details(Node parent, const std::string& summary);
 

@@ -15,7 +15,7 @@ namespace carom::page {
 namespace {
 
 constexpr double kPlotWidth_px = 330.0;
-constexpr double kHeight_px = 190.0;
+constexpr double kPlotHeight_px = 190.0;
 constexpr int kTimeTicks = 6;
 constexpr int kValueTicks = 8;
 
@@ -168,7 +168,7 @@ void add_plot(Node parent, const Plot& plot, const Axis& y, const Legend& legend
   say(caption, " " + finding(plot) + note);
   const Canvas canvas =
       add_canvas(figure, {plot.title, every_peak(plot) + note}, Axis::linear(0.0, plot.times_s.back()), y,
-                 kPlotWidth_px, kHeight_px, {kTimeTicks, "time, s"}, {kValueTicks, plot.quantity});
+                 kPlotWidth_px, kPlotHeight_px, {kTimeTicks, "time, s"}, {kValueTicks, plot.quantity});
   describe_to_script(canvas);
   for (const Rule& rule : plot.rules) draw_rule(canvas, rule);
   if (!plot.expected.empty()) {
