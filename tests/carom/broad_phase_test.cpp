@@ -181,7 +181,7 @@ TYPED_TEST(BroadPhaseTwin, FindsSamePairs_AsBruteForce_WhenBuiltAgain) {
   constexpr int kDim = TypeParam::kDim;
   typename TypeParam::Type fast;
   BruteForce<kDim> twin;
-  for (const std::size_t count : {100, 300, 0, 1, 200}) {
+  for (const std::size_t count : {100U, 300U, 0U, 1U, 200U}) {
     SCOPED_TRACE(testing::Message() << "balls " << count);
     const Cloud<kDim> balls = cloud<kDim>(10, count, 20.0);
     fast.build(balls.position, balls.bound);
