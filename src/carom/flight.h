@@ -38,9 +38,6 @@ class Flight {
 
   /// By how much less than 1/m a force accelerates the ball over `tau_s`, because its own motion is damped.
   virtual double yield(const World<Dim>& world, std::size_t ball, double tau_s) const = 0;
-
-  /// Whether the parabolas are the exact flights, whatever their length.
-  virtual bool exact() const = 0;
 };
 
 /// The flight with exactly the effects that the scene engages; null where it engages none, and balls fly
@@ -91,8 +88,6 @@ class FlightModel final : public Flight<Dim> {
     const double rate = midpoint_rate(world, ball, world.velocity[ball], field(world, ball), tau_s);
     return 1.0 / (1.0 + 0.5 * tau_s * rate);
   }
-
-  bool exact() const override { return !kDamps && !kTurns; }
 
  private:
   /// a of (2).

@@ -40,9 +40,9 @@ Vec<Dim> normal_between(const Vec<Dim>& a, const Vec<Dim>& b) {
 /// then holds. The moment at which a slip ends is part of the step like an impact (grips()).
 ///
 /// Where balls still chatter after as many flights in a step as kMostFlights, the rest of the step is taken
-/// in one piece: finish_crowd() gives all balls that would meet until then one common inelastic impact, so
-/// that no gap closes below zero (J. J. Moreau's time stepping, of first order). That ends piles that form,
-/// and inelastic collapse.
+/// in one piece: join_crowd() gives all balls that would meet until then one common inelastic impact, so that
+/// no gap closes below zero (J. J. Moreau's time stepping, of first order), and whatever hits the crowd later
+/// in the step joins it. That ends piles that form, and inelastic collapse.
 template <int Dim, bool kAccelerates, bool kFriction>
 class Resting {
  public:
