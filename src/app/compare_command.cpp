@@ -112,53 +112,10 @@ std::vector<std::string> engines_under_test(const std::vector<EngineChoice>& cho
   return own.empty() ? all : own;
 }
 
-/// Why no closed form is asked for this truth; empty where one is.
-std::string no_closed_form_asked(TruthKind kind) {
-  switch (kind) {
-    case TruthKind::automatic:
-    case TruthKind::closed_form:
-      return {};
-    case TruthKind::none:
-      return "the scene asks for none";
-    case TruthKind::exact:
-      return "an exact solution is not available in this version";
-    case TruthKind::converged:
-      return "a converged solution is not available in this version";
-  }
-  return {};
-}
-
-/// How far, relative to the time, "just before" and "just after" a frame are: far above the rounding of an
-/// impact time, far below what anything but an impact changes.
-constexpr double kAround = 1e-9;
-
-/// The truth of a scene, recorded from an engine that knows it.
-Truth record_truth(const Scenario& scene, const ProcessLimits& limits, int parallel) {
-  Truth truth;
-  truth.reason = no_closed_form_asked(scene.truth);
-  if (!truth.reason.empty()) return truth;
-  const auto recorded_over = [&](double duration_share) {
-    Scenario stretched = scene;
-    stretched.duration_s *= duration_share;
-    return run_engines(stretched, {{closed_form_source(), "faithful"}}, limits, parallel).front();
-  };
-  const Run run = recorded_over(1.0);
-  truth.reason = run.reason;
-  if (run.status != RunStatus::ok) return truth;
-  truth.kind = run.engine;
-  truth.uncertainty_m = run.uncertainty_m;
-  truth.trajectory = run.trajectory;
-  for (const double share : {1.0 - kAround, 1.0 + kAround}) {
-    const Run around = recorded_over(share);
-    if (around.status == RunStatus::ok) truth.around.push_back(around.trajectory);
-  }
-  return truth;
-}
-
 SceneComparison compare_scene(const ScenarioPtr& scene, const std::vector<EngineChoice>& engines,
                               const Options& options, Progress& progress) {
   const ProcessLimits limits{options.timeout_s, options.memory_mib};
-  Truth truth = record_truth(*scene, limits, options.parallel);
+  Truth truth = record_truth(*scene, truth_sources(), limits);
   std::vector<Run> runs = run_engines(*scene, engines, limits, options.parallel, [&](std::size_t done) {
     progress.advance(fmt::format("{} {}", scene->id, engines[done].source.name));
   });

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "engine/modules.h"
 #include "reference/engine_table.h"
-#include "reference/exact/closed_form.h"
+#include "reference/closed_form/closed_form.h"
 
 namespace carom {
 
@@ -93,11 +93,8 @@ EngineSource EngineCatalog::find(const std::string& name) const {
                                name, fmt::join(built, ", ")));
 }
 
-EngineSource closed_form_source() {
-  return {"closed-form", []() -> const Engine& {
-            static const std::unique_ptr<Engine> engine = make_closed_form_engine();
-            return *engine;
-          }};
+std::vector<std::shared_ptr<const TruthSource>> truth_sources() {
+  return {make_closed_form_truth()};
 }
 
 }  // namespace carom

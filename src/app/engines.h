@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "comparison/results.h"
+#include "engine/truth_source.h"
 #include "trajectory/record.h"
 
 namespace carom {
@@ -31,7 +33,7 @@ class EngineCatalog {
   std::vector<MissingEngine> missing_;
 };
 
-/// The engine that knows closed forms; the truth is recorded from it.
-EngineSource closed_form_source();
+/// What truths come from, in the order in which they are asked.
+std::vector<std::shared_ptr<const TruthSource>> truth_sources();
 
 }  // namespace carom

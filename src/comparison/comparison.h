@@ -9,26 +9,12 @@
 #include "scenario/metric.h"
 #include "scenario/scenario.h"
 #include "trajectory/trajectory.h"
+#include "trajectory/truth.h"
 
 namespace carom {
 
 // The result of comparing the runs of one scene: data only, made by compare() (compare.h), read by the
 // reports.
-
-/// What a run is measured against, frame by frame. A closed form's trajectory, and how sure it is.
-struct Truth {
-  std::string kind = "none";        ///< "closed-form", …, or "none"
-  std::string reason;               ///< why there is none
-  double uncertainty_m = 0.0;       ///< a bound on the error of every position
-  std::optional<double> horizon_s;  ///< until when it is known; nothing: for the whole duration
-  Trajectory trajectory;
-  /// The same at times shortly before and shortly after each frame. At an impact velocities have two values,
-  /// and an engine that is right but for rounding may show either of them. Empty where there is nothing but
-  /// `trajectory`.
-  std::vector<Trajectory> around;
-
-  bool known() const { return kind != "none"; }
-};
 
 /// Where a run first leaves what it is compared with.
 struct Divergence {

@@ -1,4 +1,4 @@
-#include "reference/exact/closed_form.h"
+#include "reference/closed_form/closed_form.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "reference/exact/motion.h"
+#include "reference/closed_form/motion.h"
 
 namespace carom {
 namespace {
@@ -753,7 +753,7 @@ TEST(ClosedFormLine, Scene_IsRefused_WhereTheFamilyEnds) {
 // ------------------------------------------------------------------------------------------- every family
 
 /// Two families that solve the same scene, by different formulas.
-void expect_agreement(const exact::Attempt& one, const exact::Attempt& other, const Scenario& s) {
+void expect_agreement(const closed_form::Attempt& one, const closed_form::Attempt& other, const Scenario& s) {
   ASSERT_TRUE(one.motion) << one.reason;
   ASSERT_TRUE(other.motion) << other.reason;
   std::vector<BallState> a(s.balls.size());
@@ -777,11 +777,11 @@ TEST(ClosedForm, Families_Agree_WhereTheyOverlap) {
   for (const double e : {0.0, 0.4, 1.0}) {
     Scenario head_on = scene({ball({-1, 1, 0}, {0.7, 0, 0}, 2.0), ball({1, 1, 0}, {-0.2, 0, 0}, kInfinity)});
     head_on.ball_contact.restitution = e;
-    expect_agreement(exact::try_pair(head_on), exact::try_line(head_on), head_on);
+    expect_agreement(closed_form::try_pair(head_on), closed_form::try_line(head_on), head_on);
     Scenario lone = scene({ball({0.5, 0.25, 0}, {0.7, 0, 0}, 2.0)}, 40.0);
     lone.walls = {{Vec3::UnitX(), 0.0}, {-Vec3::UnitX(), -1.3}};
     lone.wall_contact.restitution = e;
-    expect_agreement(exact::try_separable(lone), exact::try_line(lone), lone);
+    expect_agreement(closed_form::try_separable(lone), closed_form::try_line(lone), lone);
   }
 }
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "reference/exact/closed_form.h"
+#include "reference/closed_form/closed_form.h"
 
 namespace carom {
 namespace {

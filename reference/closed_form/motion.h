@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "engine/engine.h"
-#include "reference/exact/twofold.h"
+#include "reference/closed_form/twofold.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 /// The motion of every ball of a scene in closed form.
 class Motion {
@@ -52,4 +52,4 @@ Attempt try_rough_wall(const Scenario& scenario);
 /// Two balls that meet once, smooth or rough.
 Attempt try_pair(const Scenario& scenario);
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "reference/exact/scene_facts.h"
-#include "reference/exact/twofold_vector.h"
+#include "reference/closed_form/scene_facts.h"
+#include "reference/closed_form/twofold_vector.h"
 #include "scenario/scenario.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 /// The tangential impulse of an impact, N s, on the body whose surface slips at s against the other's:
 ///
@@ -36,4 +36,4 @@ inline Twofold slip_per_impulse(const Ball& ball) {
   return (Twofold(1.0) + Twofold(1.0) / ball.inertia) * inverse_mass(ball);
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

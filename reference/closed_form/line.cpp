@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "reference/exact/chain.h"
-#include "reference/exact/motion.h"
-#include "reference/exact/scene_facts.h"
-#include "reference/exact/timeline.h"
+#include "reference/closed_form/chain.h"
+#include "reference/closed_form/motion.h"
+#include "reference/closed_form/scene_facts.h"
+#include "reference/closed_form/timeline.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -248,4 +248,4 @@ Attempt try_line(const Scenario& scenario) {
   return {std::move(motion), {}};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "reference/exact/axis_motion.h"
-#include "reference/exact/motion.h"
-#include "reference/exact/scene_facts.h"
+#include "reference/closed_form/axis_motion.h"
+#include "reference/closed_form/motion.h"
+#include "reference/closed_form/scene_facts.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -200,4 +200,4 @@ Attempt try_separable(const Scenario& scenario) {
   return {std::make_unique<SeparableMotion>(scenario, std::move(balls)), {}};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "reference/exact/accelerated.h"
-#include "reference/exact/friction.h"
-#include "reference/exact/motion.h"
-#include "reference/exact/scene_facts.h"
+#include "reference/closed_form/accelerated.h"
+#include "reference/closed_form/friction.h"
+#include "reference/closed_form/motion.h"
+#include "reference/closed_form/scene_facts.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -216,4 +216,4 @@ Attempt try_pair(const Scenario& scenario) {
   return {std::move(motion), {}};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

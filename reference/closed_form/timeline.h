@@ -4,9 +4,9 @@
 #include <iterator>
 #include <vector>
 
-#include "reference/exact/twofold.h"
+#include "reference/closed_form/twofold.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 /// Of stretches in the order of their `start_s`, the one that a moment falls into. @pre not empty, and the
 /// first starts no later than that.
@@ -17,4 +17,4 @@ const Stretch& stretch_at(const std::vector<Stretch>& stretches, const Twofold& 
   return *std::prev(later);
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "reference/exact/timeline.h"
-#include "reference/exact/twofold_vector.h"
+#include "reference/closed_form/timeline.h"
+#include "reference/closed_form/twofold_vector.h"
 #include "scenario/scenario.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 /// A ball from a moment on, under constant accelerations of its centre and of its spin.
 struct Stretch {
@@ -89,4 +89,4 @@ class WallStory {
   std::vector<Stretch> stretches_;
 };
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

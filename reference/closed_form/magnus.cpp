@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "reference/exact/motion.h"
-#include "reference/exact/scene_facts.h"
+#include "reference/closed_form/motion.h"
+#include "reference/closed_form/scene_facts.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -146,4 +146,4 @@ Attempt try_magnus(const Scenario& scenario) {
   return {std::make_unique<MagnusMotion>(scenario, std::move(flights)), {}};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

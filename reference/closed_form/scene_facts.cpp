@@ -1,11 +1,11 @@
-#include "reference/exact/scene_facts.h"
+#include "reference/closed_form/scene_facts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 bool has_drag(const Scenario& scenario) {
   return scenario.effects.drag && scenario.effects.drag->coefficient > 0.0;
@@ -63,4 +63,4 @@ std::string starts_outside(const Scenario& scenario) {
   return {};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

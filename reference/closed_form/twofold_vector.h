@@ -4,13 +4,13 @@
 #include <Eigen/Geometry>
 
 #include "core/vec.h"
-#include "reference/exact/twofold.h"
+#include "reference/closed_form/twofold.h"
 
 /// Lets Eigen's vectors hold pairs of doubles.
 template <>
-struct Eigen::NumTraits<carom::exact::Twofold> : Eigen::GenericNumTraits<carom::exact::Twofold> {};
+struct Eigen::NumTraits<carom::closed_form::Twofold> : Eigen::GenericNumTraits<carom::closed_form::Twofold> {};
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 using Vec3Twofold = Eigen::Matrix<Twofold, 3, 1>;
 
@@ -25,4 +25,4 @@ inline Twofold length(const Vec3Twofold& v) {
   return sqrt(v.dot(v));
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

@@ -1,13 +1,13 @@
-#include "reference/exact/chain.h"
+#include "reference/closed_form/chain.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "reference/exact/scene_facts.h"
+#include "reference/closed_form/scene_facts.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -106,4 +106,4 @@ std::string Chain::follow() {
   }
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

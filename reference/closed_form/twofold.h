@@ -4,7 +4,7 @@
 #include <compare>
 #include <cstdint>
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 /// A number as the unevaluated sum of two doubles, about 32 digits, |lo| <= ulp(hi)/2.
 ///
@@ -116,4 +116,4 @@ inline Twofold power(Twofold base, std::int64_t n) {
   return result;
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

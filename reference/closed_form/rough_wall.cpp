@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "reference/exact/motion.h"
-#include "reference/exact/scene_facts.h"
-#include "reference/exact/wall_story.h"
+#include "reference/closed_form/motion.h"
+#include "reference/closed_form/scene_facts.h"
+#include "reference/closed_form/wall_story.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -91,4 +91,4 @@ Attempt try_rough_wall(const Scenario& scenario) {
   return {std::make_unique<RoughWallMotion>(scenario, std::move(stories)), {}};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

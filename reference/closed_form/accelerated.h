@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "reference/exact/twofold.h"
+#include "reference/closed_form/twofold.h"
 
 // Uniformly accelerated motion along a line.
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 struct Arrival {
   Twofold after_s;
@@ -41,4 +41,4 @@ inline Twofold turn_s(const Twofold& velocity_mps, const Twofold& acceleration_m
   return velocity_mps * acceleration_mps2 < 0.0 ? -velocity_mps / acceleration_mps2 : Twofold(0.0);
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

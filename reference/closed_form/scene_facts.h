@@ -4,10 +4,10 @@
 #include <limits>
 #include <string>
 
-#include "reference/exact/twofold_vector.h"
+#include "reference/closed_form/twofold_vector.h"
 #include "scenario/scenario.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -45,4 +45,4 @@ double gap_m(const Wall& wall, double radius_m, const Vec3& centre);
 /// Names the first ball that starts outside a wall; empty where none does.
 std::string starts_outside(const Scenario& scenario);
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

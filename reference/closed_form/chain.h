@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "reference/exact/twofold.h"
+#include "reference/closed_form/twofold.h"
 #include "scenario/scenario.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 /// The uniform motion of a body from a moment on.
 struct Leg {
@@ -62,4 +62,4 @@ class Chain {
   std::vector<Impact> impacts_;
 };
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

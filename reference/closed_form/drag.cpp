@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "reference/exact/motion.h"
-#include "reference/exact/scene_facts.h"
+#include "reference/closed_form/motion.h"
+#include "reference/closed_form/scene_facts.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -236,4 +236,4 @@ Attempt try_drag(const Scenario& scenario) {
   return {std::make_unique<DragMotion>(scenario, std::move(flights)), {}};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "reference/exact/twofold.h"
+#include "reference/closed_form/twofold.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 /// One coordinate of a ball's centre and what bounds it.
 struct AxisScene {
@@ -96,4 +96,4 @@ class AxisMotion {
   AxisState lap_end_;  ///< only its totals, which every lap adds to
 };
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

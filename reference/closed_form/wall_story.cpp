@@ -1,15 +1,15 @@
-#include "reference/exact/wall_story.h"
+#include "reference/closed_form/wall_story.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "reference/exact/accelerated.h"
-#include "reference/exact/friction.h"
-#include "reference/exact/scene_facts.h"
+#include "reference/closed_form/accelerated.h"
+#include "reference/closed_form/friction.h"
+#include "reference/closed_form/scene_facts.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -255,4 +255,4 @@ double WallStory::fastest_mps() const {
   return fastest;
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

@@ -1,13 +1,13 @@
-#include "reference/exact/axis_motion.h"
+#include "reference/closed_form/axis_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "reference/exact/accelerated.h"
-#include "reference/exact/timeline.h"
+#include "reference/closed_form/accelerated.h"
+#include "reference/closed_form/timeline.h"
 
-namespace carom::exact {
+namespace carom::closed_form {
 
 namespace {
 
@@ -208,4 +208,4 @@ AxisState AxisMotion::in_series(const Twofold& time_s) const {
           all.state.area_ms + wall * elapsed + height.area_ms * outward, all.state.bounces + height.bounces};
 }
 
-}  // namespace carom::exact
+}  // namespace carom::closed_form

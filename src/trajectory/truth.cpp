@@ -1,0 +1,155 @@
+#include "trajectory/truth.h"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "trajectory/record.h"
+
+namespace carom {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// How far, relative to the time, "just before" and "just after" a frame are: far above the rounding of an
+/// impact time, far below what anything but an impact changes.
+constexpr double kAround = 1e-9;
+/// The moments of a frame, in order of time; the frame itself is the middle one.
+constexpr std::array kShares = {1.0 - kAround, 1.0, 1.0 + kAround};
+constexpr std::size_t kMiddle = 1;
+
+/// The moments of all frames, as the engines step to them: kShares.size() for each.
+std::vector<Moment> moments_of(const Scenario& scenario) {
+  const std::int64_t steps = steps_per_frame(scenario);
+  const double step_s =
+      scenario.duration_s / static_cast<double>(scenario.frames) / static_cast<double>(steps);
+  std::vector<Moment> moments;
+  for (std::int64_t frame = 0; frame <= scenario.frames; ++frame) {
+    for (const double share : kShares) moments.push_back({share * step_s, frame * steps});
+  }
+  return moments;
+}
+
+bool asks_for(TruthKind asked, std::string_view kind) {
+  switch (asked) {
+    case TruthKind::automatic:
+      return true;
+    case TruthKind::closed_form:
+      return kind == "closed-form";
+    case TruthKind::exact:
+      return kind == "exact";
+    case TruthKind::converged:
+      return kind == "converged";
+    case TruthKind::none:
+      return false;
+  }
+  return false;
+}
+
+Json to_json(const Solution& solution) {
+  Json json = {{"uncertainty_m", solution.uncertainty_m},
+               {"limit", solution.limit},
+               {"digits", solution.digits},
+               {"impact_count", solution.impact_count},
+               {"amplification", solution.amplification},
+               {"impacts", Json::array()},
+               {"ties", Json::array()}};
+  if (solution.known_until_s) json["known_until_s"] = *solution.known_until_s;
+  for (const TrueImpact& impact : solution.impacts) {
+    json["impacts"].push_back({impact.time_s, impact.ball, impact.partner, impact.wall});
+  }
+  for (const Tie& tie : solution.ties) json["ties"].push_back({tie.time_s, tie.balls, tie.shares_ball});
+  return json;
+}
+
+Solution solution_from(const Json& json) {
+  Solution solution;
+  solution.uncertainty_m = json.at("uncertainty_m");
+  solution.limit = json.at("limit");
+  solution.digits = json.at("digits");
+  solution.impact_count = json.at("impact_count");
+  solution.amplification = json.at("amplification").get<std::vector<double>>();
+  if (json.contains("known_until_s")) solution.known_until_s = json.at("known_until_s").get<double>();
+  for (const Json& row : json.at("impacts")) {
+    solution.impacts.push_back({row.at(0), row.at(1), row.at(2), row.at(3)});
+  }
+  for (const Json& row : json.at("ties")) solution.ties.push_back({row.at(0), row.at(1), row.at(2)});
+  return solution;
+}
+
+double cpu_now() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The body of the solving process: the first source that takes the scene, or why none does.
+std::string solve(const Scenario& scenario, const std::vector<std::shared_ptr<const TruthSource>>& sources,
+                  std::array<Trajectory, kShares.size()> trajectories) {
+  std::string reasons;
+  for (const auto& source : sources) {
+    if (!asks_for(scenario.truth, source->kind())) continue;
+    const std::string reason = source->refuses(scenario);
+    if (!reason.empty()) {
+      reasons += (reasons.empty() ? "" : "; ") + reason;
+      continue;
+    }
+    const std::vector<Moment> moments = moments_of(scenario);
+    const double before = cpu_now();
+    const Solution solution = source->solve(
+        scenario, moments, [&](std::size_t k, std::span<const BallState> balls, const Tally& tally) {
+          Trajectory& trajectory = trajectories[k % kShares.size()];
+          const std::size_t frame = k / kShares.size();
+          std::copy(balls.begin(), balls.end(), trajectory.frame(frame).begin());
+          trajectory.tally(frame) = tally;
+        });
+    Json json = to_json(solution);
+    json["kind"] = source->kind();
+    json["cpu_seconds"] = cpu_now() - before;
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  if (reasons.empty()) reasons = "no source of the kind that the scene asks for";
+  return Json{{"reason", reasons}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Truth record_truth(const Scenario& scenario, const std::vector<std::shared_ptr<const TruthSource>>& sources,
+                   const ProcessLimits& limits) {
+  Truth truth;
+  if (scenario.truth == TruthKind::none) {
+    truth.reason = "the scene asks for none";
+    return truth;
+  }
+  std::array<Trajectory, kShares.size()> trajectories;
+  for (Trajectory& trajectory : trajectories) trajectory = Trajectory(scenario);
+  const ProcessOutcome outcome =
+      run_isolated({[&] { return solve(scenario, sources, trajectories); }}, limits, 1).front();
+  if (outcome.end != ProcessEnd::finished) {
+    truth.reason = outcome.reason;
+    return truth;
+  }
+  const Json json = Json::parse(outcome.payload);
+  if (json.contains("reason")) {
+    truth.reason = json.at("reason");
+    return truth;
+  }
+  truth.kind = json.at("kind");
+  truth.cpu_seconds = json.at("cpu_seconds");
+  truth.solution = solution_from(json);
+  truth.uncertainty_m = truth.solution.uncertainty_m;
+  truth.horizon_s = truth.solution.known_until_s;
+  truth.trajectory = trajectories[kMiddle];
+  truth.around = {trajectories.front(), trajectories.back()};
+  // Of each frame, not of the moments around it.
+  std::vector<double>& amplification = truth.solution.amplification;
+  for (std::size_t k = kMiddle; k < amplification.size(); k += kShares.size()) {
+    amplification[k / kShares.size()] = amplification[k];
+  }
+  amplification.resize(amplification.size() / kShares.size());
+  return truth;
+}
+
+}  // namespace carom
