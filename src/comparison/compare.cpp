@@ -11,6 +11,7 @@
 #include "comparison/metrics/momentum.h"
 #include "comparison/metrics/positions.h"
 #include "comparison/metrics/yardstick.h"
+#include "comparison/predictability.h"
 
 namespace carom {
 
@@ -26,6 +27,15 @@ void measure(const Yardstick& yardstick, double tolerance_m, RunComparison& resu
   measure_positions(yardstick, result);
   measure_contact(yardstick, result);
   result.first_divergence = divergence_from_truth(yardstick, conserved, result, tolerance_m);
+  if (yardstick.truth().known()) {
+    result.judgement = judge(yardstick.scene(), yardstick.truth(), tolerance_m, result);
+  }
+}
+
+/// Of two moments; nothing is never.
+std::optional<double> earlier(std::optional<double> a, std::optional<double> b) {
+  if (!a || !b) return a ? a : b;
+  return std::min(*a, *b);
 }
 
 /// Two runs against each other.
@@ -67,6 +77,8 @@ SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
   result.scene = std::move(scene);
   result.truth = std::move(truth);
   result.position_tolerance_m = position_tolerance_m(*result.scene);
+  result.predictability = predictability_of(*result.scene, result.truth, result.position_tolerance_m);
+  result.truth.horizon_s = earlier(result.truth.horizon_s, result.predictability.horizon_s);
   const Yardstick yardstick(*result.scene, result.truth);
   for (Run& run : runs) {
     RunComparison& each = result.runs.emplace_back();

@@ -34,4 +34,18 @@ std::string_view name_of(RunStatus status) {
   return "?";
 }
 
+std::string_view name_of(Accuracy accuracy) {
+  switch (accuracy) {
+    case Accuracy::exact:
+      return "exact";
+    case Accuracy::within_tolerance:
+      return "within tolerance";
+    case Accuracy::chaos:
+      return "chaos";
+    case Accuracy::systematic:
+      return "systematic";
+  }
+  return "?";
+}
+
 }  // namespace carom

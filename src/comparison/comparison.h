@@ -21,6 +21,29 @@ struct Divergence {
   double time_s = 0.0;
   std::vector<std::size_t> balls;  ///< those that are off the most, at most two
   Metric metric = Metric::position;
+  /// The impact of the true motion by which the ball that is off the most went wrong; nothing where it did in
+  /// flight, or the truth does not tell its impacts.
+  std::optional<TrueImpact> cause = std::nullopt;
+};
+
+/// How right a run is where the truth is known.
+enum class Accuracy {
+  exact,             ///< within the truth's uncertainty and what rounding makes of its precision
+  within_tolerance,  ///< off by more, but by less than would show
+  chaos,      ///< parted from the truth as rounding alone explains, grown by the scene's own instability
+  systematic  ///< parted from the truth for another reason
+};
+
+struct Judgement {
+  Accuracy accuracy = Accuracy::exact;
+  std::optional<double> beyond_rounding_s;  ///< when the error first was more than rounding explains
+};
+
+/// How fast errors grow in a scene, from its truth.
+struct Predictability {
+  std::optional<double> growth_rate_per_s;  ///< λ: an error δ becomes δ e^{λt}
+  double growth_r_squared = 0.0;            ///< of the fit of λ
+  std::optional<double> horizon_s;  ///< until when double precision can follow; nothing: the whole duration
 };
 
 /// One limit held against one value.
@@ -45,6 +68,7 @@ struct RunComparison {
   bool under_test = false;
   Metrics metrics;
   std::optional<Divergence> first_divergence;  ///< from the truth
+  std::optional<Judgement> judgement;          ///< nothing without a truth
   std::vector<GateResult> gates;
   Verdict verdict = Verdict::shown;
   RunSeries series;
@@ -72,6 +96,7 @@ struct PairComparison {
 struct SceneComparison {
   ScenarioPtr scene;
   Truth truth;
+  Predictability predictability;
   double position_tolerance_m = 0.0;  ///< beyond it two trajectories count as diverged
   std::vector<RunComparison> runs;
   std::vector<PairComparison> pairs;
@@ -80,5 +105,6 @@ struct SceneComparison {
 /// The plain word for each state, as it stands in results.
 std::string_view name_of(Verdict verdict);
 std::string_view name_of(RunStatus status);
+std::string_view name_of(Accuracy accuracy);
 
 }  // namespace carom

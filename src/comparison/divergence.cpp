@@ -37,6 +37,36 @@ std::vector<std::size_t> most_different(const Trajectory& a, const Trajectory& b
   return balls;
 }
 
+/// Of the balls named, the one that is off the most in this frame.
+std::size_t farthest_off(const Divergence& divergence, const Trajectory& run, const Trajectory& truth,
+                         std::size_t frame) {
+  const auto off = [&](std::size_t ball) {
+    return (run.frame(frame)[ball].position - truth.frame(frame)[ball].position).norm();
+  };
+  return *std::max_element(divergence.balls.begin(), divergence.balls.end(),
+                           [&](std::size_t a, std::size_t b) { return off(a) < off(b); });
+}
+
+/// From the frame of the divergence back to where the ball was last off by less than a hundredth of what it
+/// is off there: in the interval after that frame it went wrong, by its last true impact up to then.
+std::optional<TrueImpact> cause_of(const Divergence& divergence, const Trajectory& run, const Truth& truth) {
+  constexpr double kNotYet = 0.01;
+  std::size_t frame = 0;
+  while (frame + 1 < run.frames() && run.time(frame) < divergence.time_s) ++frame;
+  const std::size_t ball = farthest_off(divergence, run, truth.trajectory, frame);
+  const auto off = [&](std::size_t k) {
+    return (run.frame(k)[ball].position - truth.trajectory.frame(k)[ball].position).norm();
+  };
+  const double at_divergence = off(frame);
+  while (frame > 0 && off(frame - 1) >= kNotYet * at_divergence) --frame;
+  std::optional<TrueImpact> last;
+  for (const TrueImpact& impact : truth.solution.impacts) {
+    if (impact.time_s > run.time(frame)) break;
+    if (impact.ball == ball || (!impact.wall && impact.partner == ball)) last = impact;
+  }
+  return last;
+}
+
 }  // namespace
 
 double position_tolerance_m(const Scenario& scene) {
@@ -68,7 +98,10 @@ std::optional<Divergence> divergence_from_truth(const Yardstick& yardstick,
                                ? yardstick.by_energy(std::abs(yardstick.energy_off_truth(conserved[k], k)))
                                : kNotKnown);
   }
-  return first_divergence(measured.run.trajectory, truth.trajectory, apart, tolerance_m);
+  std::optional<Divergence> divergence =
+      first_divergence(measured.run.trajectory, truth.trajectory, apart, tolerance_m);
+  if (divergence) divergence->cause = cause_of(*divergence, measured.run.trajectory, truth);
+  return divergence;
 }
 
 }  // namespace carom

@@ -20,9 +20,42 @@ Json vector(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+Json impact(const TrueImpact& impact) {
+  return {
+      {"time", impact.time_s}, {"ball", impact.ball}, {impact.wall ? "wall" : "other_ball", impact.partner}};
+}
+
+Json judgement(const std::optional<Judgement>& judgement) {
+  if (!judgement) return nullptr;
+  return {{"verdict", name_of(judgement->accuracy)},
+          {"beyond_rounding_from", number_or_null(judgement->beyond_rounding_s)}};
+}
+
+Json truth_json(const SceneComparison& comparison) {
+  const Truth& truth = comparison.truth;
+  const bool known = truth.known();
+  Json json = {{"kind", truth.kind},
+               {"reason", truth.reason},
+               {"uncertainty", known ? Json(truth.uncertainty_m) : Json(nullptr)},
+               {"horizon", number_or_null(truth.horizon_s)}};
+  if (!known) return json;
+  const Solution& solution = truth.solution;
+  json["known_until"] = number_or_null(solution.known_until_s);
+  json["limit"] = solution.limit;
+  json["digits"] = solution.digits > 0 ? Json(solution.digits) : Json(nullptr);
+  json["impacts"] = solution.impact_count;
+  json["ties"] = solution.ties.size();
+  json["growth_rate"] = number_or_null(comparison.predictability.growth_rate_per_s);
+  json["predictable_until"] = number_or_null(comparison.predictability.horizon_s);
+  json["cpu_seconds"] = truth.cpu_seconds;
+  return json;
+}
+
 Json divergence(const std::optional<Divergence>& first) {
   if (!first) return nullptr;
-  return {{"time", first->time_s}, {"balls", first->balls}, {"metric", name_of(first->metric)}};
+  Json json = {{"time", first->time_s}, {"balls", first->balls}, {"metric", name_of(first->metric)}};
+  json["cause"] = first->cause ? impact(*first->cause) : Json(nullptr);
+  return json;
 }
 
 Json metrics(const RunComparison& result) {
@@ -86,6 +119,7 @@ Json run_json(const Scenario& scene, const RunComparison& result, bool all_balls
       {"collisions", ok ? Json(run.trajectory.tally(run.trajectory.frames() - 1).impacts) : Json(nullptr)},
       {"under_test", result.under_test},
       {"metrics", metrics(result)},
+      {"accuracy", judgement(result.judgement)},
       {"first_divergence", divergence(result.first_divergence)},
       {"gates", gates(result)},
       {"verdict", name_of(result.verdict)},
@@ -116,11 +150,7 @@ Json scene_json(const SceneComparison& comparison, bool all_balls) {
                {"effects", Json::array()},
                {"notes", scene.notes}};
   for (const Feature feature : required_features(scene)) json["effects"].push_back(name_of(feature));
-  json["truth"] = {
-      {"kind", comparison.truth.kind},
-      {"reason", comparison.truth.reason},
-      {"uncertainty", comparison.truth.known() ? Json(comparison.truth.uncertainty_m) : Json(nullptr)},
-      {"horizon", number_or_null(comparison.truth.horizon_s)}};
+  json["truth"] = truth_json(comparison);
   json["runs"] = Json::array();
   for (const RunComparison& run : comparison.runs) json["runs"].push_back(run_json(scene, run, all_balls));
   json["pairs"] = Json::array();

@@ -31,7 +31,19 @@ std::string verdict_word(Verdict verdict, bool color) {
 
 std::string truth_words(const SceneComparison& scene) {
   if (!scene.truth.known()) return fmt::format("truth: none, {}", scene.truth.reason);
-  return fmt::format("truth: {}, known to {:.1g} m", scene.truth.kind, scene.truth.uncertainty_m);
+  std::string text = fmt::format("truth: {}, known to {:.1g} m", scene.truth.kind, scene.truth.uncertainty_m);
+  if (scene.truth.horizon_s) text += fmt::format(" until t = {} s", short_number(scene.truth.horizon_s));
+  return text;
+}
+
+/// Of runs that parted from the truth: when, and by which impact.
+std::string departure_row(const Scenario& scene, const RunComparison& run) {
+  if (!run.judgement || run.judgement->accuracy == Accuracy::exact ||
+      run.judgement->accuracy == Accuracy::within_tolerance) {
+    return {};
+  }
+  return fmt::format("  {}: {}, {}\n", run.run.label(), name_of(run.judgement->accuracy),
+                     departure(scene, run));
 }
 
 std::string run_row(const RunComparison& result, bool color) {
@@ -70,6 +82,7 @@ std::string results_table(const Results& results, bool color) {
     text += fmt::format("  {:<18} {:<11} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "", "", "m", "relative",
                         "relative", "/ radius", "ms");
     for (const RunComparison& run : scene.runs) text += run_row(run, color);
+    for (const RunComparison& run : scene.runs) text += departure_row(*scene.scene, run);
     for (const RunComparison& run : scene.runs) text += choice_row(run.run);
     text += "\n";
   }

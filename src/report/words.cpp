@@ -10,6 +10,36 @@ std::string short_number(std::optional<double> value) {
   return fmt::format("{:.3g}", *value);
 }
 
+namespace {
+
+std::string describe(const Scenario& scene, const TrueImpact& impact) {
+  if (!impact.wall) return fmt::format("balls {} and {} met", impact.ball, impact.partner);
+  const bool of_box = scene.box && impact.partner < 2 * static_cast<std::uint32_t>(scene.dimension);
+  const std::string wall = of_box ? fmt::format("the box's {} {}", impact.partner % 2 == 0 ? "min" : "max",
+                                                "xyz"[impact.partner / 2])
+                                  : fmt::format("wall {}", impact.partner);
+  return fmt::format("ball {} met {}", impact.ball, wall);
+}
+
+}  // namespace
+
+std::string departure(const Scenario& scene, const RunComparison& run) {
+  if (!run.judgement) return {};
+  const Judgement& judgement = *run.judgement;
+  const std::optional<double>& error_m = run.metrics[Metric::position];
+  if (!judgement.beyond_rounding_s) {
+    return fmt::format("off the truth by {} m at most, as rounding explains", short_number(error_m));
+  }
+  std::string text = fmt::format("off by more than rounding from t = {} s on, by {} m at most",
+                                 short_number(judgement.beyond_rounding_s), short_number(error_m));
+  if (!run.first_divergence) return text;
+  text = fmt::format("left the truth at t = {} s", short_number(run.first_divergence->time_s));
+  if (const auto& cause = run.first_divergence->cause) {
+    text += fmt::format(", wrong since {} at t = {} s", describe(scene, *cause), short_number(cause->time_s));
+  }
+  return text;
+}
+
 std::vector<std::string> violations(const SceneComparison& scene, const RunComparison& run) {
   std::vector<std::string> lines;
   if (!run.violates()) return lines;

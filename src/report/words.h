@@ -10,6 +10,10 @@ namespace carom {
 /// A number for people: three significant digits, "n/a" where there is none.
 std::string short_number(std::optional<double> value);
 
+/// When and by what a run left the truth: "left the truth at t = 1.23 s, when balls 3 and 7 met"; that it did
+/// not, where it did not; empty without a judgement.
+std::string departure(const Scenario& scene, const RunComparison& run);
+
 /// What makes the check fail, one line each: scene, engine, metric, value and limit, or the reason of a run
 /// that ended badly. Empty where everything holds.
 std::vector<std::string> violations(const Results& results);

@@ -1,6 +1,7 @@
 #include "report/page.h"
 
 #include "core/files.h"
+#include "report/page/accuracy.h"
 #include "report/page/chapters.h"
 #include "report/page/costs.h"
 #include "report/page/html.h"
@@ -33,6 +34,7 @@ void add_navigation(Node body, const Results& results, bool with_costs) {
   add(body, "a", {{"class", "skip"}, {"href", "#overview"}}, "Skip to the results");
   Node bar = add(body, "nav", {{"aria-label", "Parts of this page"}});
   add(bar, "a", {{"href", "#overview"}}, "All scenes");
+  if (has_judgements(results)) add(bar, "a", {{"href", "#accuracy"}}, "Who is right");
   if (has_hard_cases(results)) add(bar, "a", {{"href", "#survival"}}, "Hard cases");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
@@ -48,6 +50,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_navigation(body, results, std::filesystem::exists(costs_file(web)));
   Node main = add(body, "main");
   add_overview(main, results, legend);
+  add_accuracy(main, results, legend);
   add_survival(main, results, legend);
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
   add_guide(main, read_file(web / "guide.md"));

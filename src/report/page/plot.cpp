@@ -104,6 +104,18 @@ void name_rule(const Canvas& canvas, const Rule& rule) {
       rule.label);
 }
 
+/// Across the whole height, with its label beside it on the side that has room.
+void draw_horizon(const Canvas& canvas, const Mark& mark) {
+  const double x = canvas.at(mark.time_s, 0.0).x;
+  if (!(x >= 0.0 && x <= canvas.width)) return;
+  add(canvas.area, "path",
+      {{"class", "rule horizon"}, {"d", fmt::format("M{} 0v{}", px(x), px(canvas.height))}});
+  const bool left = x > 0.5 * canvas.width;
+  add(canvas.area, "text",
+      {{"class", left ? "over end" : "over"}, {"x", px(left ? x - 4.0 : x + 4.0)}, {"y", px(12.0)}},
+      mark.label);
+}
+
 /// What the page's script needs to read values off the drawing.
 void describe_to_script(const Canvas& canvas) {
   const char* scale = canvas.y.scale() == Axis::Scale::linear ? "linear"
@@ -171,6 +183,7 @@ void add_plot(Node parent, const Plot& plot, const Axis& y, const Legend& legend
                  kPlotWidth_px, kPlotHeight_px, {kTimeTicks, "time, s"}, {kValueTicks, plot.quantity});
   describe_to_script(canvas);
   for (const Rule& rule : plot.rules) draw_rule(canvas, rule);
+  if (plot.horizon) draw_horizon(canvas, *plot.horizon);
   if (!plot.expected.empty()) {
     add(canvas.area, "path", {{"class", "truth"}, {"d", path_data(curve(canvas, plot, plot.expected))}});
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct Rule {
   const char* look = "";
 };
 
+/// A moment that the curves are seen against.
+struct Mark {
+  double time_s = 0.0;
+  std::string label;
+};
+
 struct Plot {
   std::string title;
   std::string quantity;  ///< of the vertical axis, with its unit
@@ -31,6 +38,7 @@ struct Plot {
   std::vector<Line> lines;
   std::vector<double> expected;  ///< the truth's values, where they are known and not zero
   std::vector<Rule> rules;
+  std::optional<Mark> horizon;  ///< until when the values mean something
 };
 
 /// Powers of ten for values that are >= 0; zero is drawn at the bottom.

@@ -92,6 +92,9 @@ void add_position_plot(Node parent, const SceneComparison& scene, const Legend& 
     plot.rules.push_back({scene.position_tolerance_m, "diverged", "parted"});
   if (scene.truth.uncertainty_m > 0.0)
     plot.rules.push_back({scene.truth.uncertainty_m, "uncertainty of the truth", ""});
+  if (scene.truth.horizon_s && *scene.truth.horizon_s < scene.scene->duration_s) {
+    plot.horizon = Mark{*scene.truth.horizon_s, "horizon"};
+  }
   add_plot(parent, plot, log_axis(plot), legend);
 }
 

@@ -33,7 +33,12 @@ std::string describe(const Truth& truth) {
   if (!truth.known()) return "none" + (truth.reason.empty() ? "" : ": " + truth.reason);
   std::string text = truth.kind;
   if (truth.uncertainty_m > 0.0) text += fmt::format(", sure to {} m", number(truth.uncertainty_m));
-  if (truth.horizon_s) text += fmt::format(", known until t = {} s", number(*truth.horizon_s));
+  if (truth.solution.digits > 0) text += fmt::format(", certified with {} digits", truth.solution.digits);
+  if (truth.solution.known_until_s) {
+    text += fmt::format(", known until t = {} s: {}", number(*truth.solution.known_until_s),
+                        truth.solution.limit);
+  }
+  if (truth.horizon_s) text += fmt::format("; positions compared until t = {} s", number(*truth.horizon_s));
   return text;
 }
 
@@ -92,6 +97,10 @@ bool breaks_gate(const RunComparison& run, Metric metric) {
                      [&](const GateResult& gate) { return gate.metric == metric && !gate.holds; });
 }
 
+std::string accuracy_of(const RunComparison& run) {
+  return run.judgement ? std::string(name_of(run.judgement->accuracy)) : "n/a";
+}
+
 std::string impacts_of(const Run& run) {
   if (run.trajectory.frames() == 0) return "n/a";
   return std::to_string(run.trajectory.tally(run.trajectory.frames() - 1).impacts);
@@ -111,7 +120,8 @@ void add_metrics(Node parent, const SceneComparison& scene) {
     const char* unit = length ? ", m" : metric == Metric::escaped ? ", balls" : "";
     headings.push_back({title_of(metric) + unit, "number"});
   }
-  headings.insert(headings.end(), {{"impacts", "number"}, {"first divergence", ""}});
+  headings.insert(headings.end(),
+                  {{"impacts", "number"}, {"against the truth", ""}, {"first divergence", ""}});
   add(parent, "h3", {}, "Measured");
   Node body =
       add_table(parent, "measured",
@@ -126,6 +136,7 @@ void add_metrics(Node parent, const SceneComparison& scene) {
     }
     for (std::size_t i = 0; i < kMetricNames.size(); ++i) add_metric_cell(row, run, static_cast<Metric>(i));
     add(row, "td", {{"class", "number"}}, impacts_of(run.run));
+    add(row, "td", {}, accuracy_of(run));
     add(row, "td", {{"class", "divergence"}},
         scene.truth.known() ? page::describe(run.first_divergence) : "n/a");
   }
