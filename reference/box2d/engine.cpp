@@ -39,6 +39,7 @@ class Box2dEngine final : public Engine {
         {Feature::barrier, "no rigid-body engine tunnels"},
         {Feature::events, "the adapter does not change balls while it runs"},
     };
+    info.switches = reference::switches_of(kSwitches);
     return info;
   }
 
@@ -61,6 +62,13 @@ class Box2dEngine final : public Engine {
 
   std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const override {
     return std::make_unique<Box2dSimulation>(scenario, setup_for(scenario, profile));
+  }
+
+  std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
+                                              std::span<const std::string> switched) const override {
+    const Setup other = setup_for(scenario, reference::other_profile(profile));
+    return std::make_unique<Box2dSimulation>(
+        scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
   }
 };
 

@@ -3,19 +3,21 @@
 #include <box2d/box2d.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
 
 #include "engine/engine.h"
 #include "reference/common/scene_scale.h"
+#include "reference/common/switches.h"
 
 namespace carom::box2d {
 
 /// Everything in which the profiles differ. CONVENTIONS.md says why each value is what it is.
 struct Setup {
-  double length_scale = 1.0;           ///< Box2D length units per metre of the scene, a power of two
-  double restitution_threshold = 1.0;  ///< Box2D length units per second
+  double length_scale = 1.0;  ///< Box2D length units per metre of the scene, a power of two
+  double velocity_threshold_mps = 1.0;
   int velocity_iterations = 8;
   int position_iterations = 3;
   bool sleeping = true;
@@ -48,7 +50,7 @@ inline Setup setup_for(const Scenario& scene, std::string_view profile) {
   Setup setup;
   if (profile == "default") return setup;
   setup.length_scale = faithful_length_scale(scene);
-  setup.restitution_threshold = 0.0;
+  setup.velocity_threshold_mps = 0.0;
   setup.velocity_iterations = 50;
   setup.position_iterations = 0;
   setup.sleeping = false;
@@ -58,5 +60,24 @@ inline Setup setup_for(const Scenario& scene, std::string_view profile) {
   setup.continuous_when_fast = true;
   return setup;
 }
+
+/// Every setting in which the profiles differ, to be switched one by one.
+inline constexpr std::array<reference::SetupSwitch<Setup>, 9> kSwitches = {{
+    {"length_scale", "Box2D's length units per metre: its absolute margins against the balls",
+     &reference::copy_members<&Setup::length_scale>},
+    {"velocity_threshold_mps", "a slower impact loses its bounce",
+     &reference::copy_members<&Setup::velocity_threshold_mps>},
+    {"velocity_iterations", "rounds over all contacts until their impulses agree",
+     &reference::copy_members<&Setup::velocity_iterations>},
+    {"position_iterations", "rounds that move overlapping bodies apart without a velocity",
+     &reference::copy_members<&Setup::position_iterations>},
+    {"sleeping", "slow bodies are stopped", &reference::copy_members<&Setup::sleeping>},
+    {"warm_starting", "a step starts from the impulses of the one before",
+     &reference::copy_members<&Setup::warm_starting>},
+    {"continuous", "what is swept between steps so that it hits and does not jump",
+     &reference::copy_members<&Setup::continuous_when_fast>},
+    {"walls", "how a wall is made, and where its skin lies", &reference::copy_members<&Setup::solid_walls>},
+    {"inertia", "the moment of inertia of a ball", &reference::copy_members<&Setup::scene_inertia>},
+}};
 
 }  // namespace carom::box2d

@@ -62,6 +62,10 @@ class Box2dSimulation final : public Simulation {
     return {static_cast<float>(v.x() * setup_.length_scale), static_cast<float>(v.y() * setup_.length_scale)};
   }
   Vec3 vec3(const b2Vec2& v) const { return Vec3(v.x, v.y, 0.0) / setup_.length_scale; }
+  /// In Box2D's units, as a fixture wants it.
+  float restitution_threshold() const {
+    return static_cast<float>(setup_.velocity_threshold_mps * setup_.length_scale);
+  }
   Vec3 spin_of(std::size_t i) const { return {0.0, 0.0, bodies_[i]->GetAngularVelocity()}; }
 
   void add_ball(const Ball& ball);
@@ -94,7 +98,7 @@ inline void Box2dSimulation::add_ball(const Ball& ball) {
   circle.m_radius = static_cast<float>(ball.radius * setup_.length_scale);
   b2FixtureDef fixture;
   fixture.shape = &circle;
-  fixture.restitutionThreshold = static_cast<float>(setup_.restitution_threshold);
+  fixture.restitutionThreshold = restitution_threshold();
   fixture.filter.categoryBits = kBall;
   fixture.filter.maskBits = scene_.effects.collisions ? kBall | kWall : kWall;
   const double area = b2_pi * static_cast<double>(circle.m_radius) * circle.m_radius;
@@ -126,7 +130,7 @@ inline void Box2dSimulation::add_wall(const Wall& wall, const reference::Reach& 
 
 inline void Box2dSimulation::add_wall_shape(b2Body& body, const b2Vec2& normal, float half_length) {
   b2FixtureDef fixture;
-  fixture.restitutionThreshold = static_cast<float>(setup_.restitution_threshold);
+  fixture.restitutionThreshold = restitution_threshold();
   fixture.filter.categoryBits = kWall;
   const b2Vec2 along = half_length * b2Cross(normal, 1.0f);
   b2EdgeShape edge;
@@ -179,7 +183,7 @@ inline Settings Box2dSimulation::settings() const {
   const bool when_fast = setup_.continuous_when_fast;
   return {
       {"length_scale", setup_.length_scale},
-      {"velocity_threshold_mps", setup_.restitution_threshold * unit_m},
+      {"velocity_threshold_mps", setup_.velocity_threshold_mps},
       {"velocity_iterations", static_cast<double>(setup_.velocity_iterations)},
       {"position_iterations", static_cast<double>(setup_.position_iterations)},
       {"sleeping", setup_.sleeping},

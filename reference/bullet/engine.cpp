@@ -51,6 +51,7 @@ class BulletEngine final : public Engine {
         {Feature::barrier, "no rigid-body engine tunnels"},
         {Feature::events, "the adapter does not change balls while it runs"},
     };
+    info.switches = reference::switches_of(kSwitches);
     return info;
   }
 
@@ -77,6 +78,13 @@ class BulletEngine final : public Engine {
 
   std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const override {
     return std::make_unique<BulletSimulation>(scenario, setup_for(scenario, profile));
+  }
+
+  std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
+                                              std::span<const std::string> switched) const override {
+    const Setup other = setup_for(scenario, reference::other_profile(profile));
+    return std::make_unique<BulletSimulation>(
+        scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
   }
 };
 

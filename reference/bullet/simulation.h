@@ -101,7 +101,8 @@ inline BulletSimulation::~BulletSimulation() {
 
 inline void BulletSimulation::configure_solver() {
   btContactSolverInfo& info = world_.getSolverInfo();
-  info.m_restitutionVelocityThreshold = static_cast<btScalar>(setup_.restitution_threshold);
+  info.m_restitutionVelocityThreshold =
+      static_cast<btScalar>(setup_.velocity_threshold_mps * setup_.length_scale);
   info.m_numIterations = setup_.iterations;
   info.m_erp2 = static_cast<btScalar>(setup_.erp2);
   info.m_splitImpulse = setup_.split_impulse ? 1 : 0;
@@ -116,7 +117,8 @@ inline btRigidBody& BulletSimulation::add_body(double mass, std::unique_ptr<btCo
   auto body = std::make_unique<btRigidBody>(info);
   body->setUserPointer(const_cast<Scenario*>(&scene_));
   body->setUserIndex(static_cast<int>(bodies_.size()));
-  body->setContactProcessingThreshold(static_cast<btScalar>(setup_.contact_processing_threshold));
+  body->setContactProcessingThreshold(
+      static_cast<btScalar>(setup_.contact_processing_threshold_m * setup_.length_scale));
   if (!setup_.sleeping) body->setActivationState(DISABLE_DEACTIVATION);
   if (!setup_.gyroscopic) body->setFlags(0);
   world_.addRigidBody(body.get(), group, mask);
@@ -244,13 +246,13 @@ inline Settings BulletSimulation::settings() const {
   const bool continuous = setup_.ccd_motion_threshold_radii > 0.0;
   return {
       {"length_scale", setup_.length_scale},
-      {"velocity_threshold_mps", setup_.restitution_threshold * unit_m},
+      {"velocity_threshold_mps", setup_.velocity_threshold_mps},
       {"velocity_iterations", static_cast<double>(setup_.iterations)},
       {"erp2", setup_.erp2},
       {"split_impulse", setup_.split_impulse},
       {"split_impulse_threshold_m", world_.getSolverInfo().m_splitImpulsePenetrationThreshold * unit_m},
       {"linear_slop_m", world_.getSolverInfo().m_linearSlop * unit_m},
-      {"contact_processing_threshold_m", setup_.contact_processing_threshold * unit_m},
+      {"contact_processing_threshold_m", setup_.contact_processing_threshold_m},
       {"contact_points", setup_.fresh_points ? "of this step" : "remembered"},
       {"warm_starting_factor", setup_.warm_starting_factor},
       {"sleeping", setup_.sleeping},

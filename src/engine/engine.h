@@ -64,6 +64,12 @@ class Simulation {
   virtual double uncertainty_m() const { return 0.0; }
 };
 
+/// A setting in which an engine's profiles differ, and which can be taken from either of them alone.
+struct Switch {
+  std::string name;     ///< as in Simulation::settings(), where its value stands
+  std::string meaning;  ///< what it does, a few words
+};
+
 /// A way of setting an engine up. "faithful" comes first: every threshold, damping, sleep and margin set for
 /// fidelity. "default" is what a newcomer gets.
 struct Profile {
@@ -80,6 +86,7 @@ struct EngineInfo {
   std::vector<Profile> profiles;
   std::map<Feature, std::string> cannot;  ///< features it lacks, each with the reason; all others it has
   std::vector<std::string> limits;        ///< what it does only so well, and why, a sentence each
+  std::vector<Switch> switches = {};      ///< every setting in which its two profiles differ
 };
 
 class Engine {
@@ -101,6 +108,11 @@ class Engine {
   /// Sets the scene up. @pre unsupported_reason() is empty, and the profile is one of info().profiles.
   /// The scenario outlives the simulation.
   virtual std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const = 0;
+
+  /// The same, with the settings of these names as the engine's other profile has them.
+  /// @pre each name is that of one of info().switches; the engine has two profiles.
+  virtual std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
+                                                      std::span<const std::string> switched) const;
 };
 
 /// Why the engine cannot run the scene: the first missing feature, or what the engine itself refuses; empty
@@ -109,7 +121,7 @@ std::string unsupported_reason(const Engine& engine, const Scenario& scenario, s
 
 /// The symbol by which a loadable engine module hands out its engine (see modules.h). Its number goes up with
 /// every change of this interface, so that a module of an older build is refused and does not crash.
-#define CAROM_ENGINE_SYMBOL carom_engine_2
+#define CAROM_ENGINE_SYMBOL carom_engine_3
 using EngineFactory = Engine* (*)();
 
 }  // namespace carom

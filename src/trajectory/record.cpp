@@ -56,7 +56,9 @@ std::string record(const Scenario& scenario, const EngineChoice& choice, Traject
     return result.dump();
   }
 
-  const std::unique_ptr<Simulation> simulation = engine.create(scenario, choice.profile);
+  const std::unique_ptr<Simulation> simulation =
+      choice.switched.empty() ? engine.create(scenario, choice.profile)
+                              : engine.create_switched(scenario, choice.profile, choice.switched);
   const std::int64_t steps = steps_per_frame(scenario);
   const double interval_s = scenario.duration_s / static_cast<double>(scenario.frames);
   double cpu_seconds = 0.0;
@@ -182,6 +184,7 @@ std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engine
                    {"precision", info.precision},
                    {"limits", info.limits}};
       for (const Profile& profile : info.profiles) json["profiles"].push_back({profile.name, profile.about});
+      for (const Switch& each : info.switches) json["switches"].push_back({each.name, each.meaning});
       for (const auto& [feature, reason] : info.cannot) {
         json["cannot"].push_back({static_cast<int>(feature), reason});
       }
@@ -202,6 +205,9 @@ std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engine
     info.limits = json.at("limits").get<std::vector<std::string>>();
     for (const Json& profile : json.value("profiles", Json::array())) {
       info.profiles.push_back({profile.at(0), profile.at(1)});
+    }
+    for (const Json& row : json.value("switches", Json::array())) {
+      info.switches.push_back({row.at(0), row.at(1)});
     }
     for (const Json& row : json.value("cannot", Json::array())) {
       info.cannot.emplace(static_cast<Feature>(row.at(0).get<int>()), row.at(1));

@@ -21,6 +21,8 @@ struct EngineSource {
 struct EngineChoice {
   EngineSource source;
   std::string profile = "faithful";
+  /// Settings that are as the engine's other profile has them; names from EngineInfo::switches.
+  std::vector<std::string> switched = {};
 };
 
 /// Runs the scene in every engine, each in a process of its own, and hands back one Run for each, in order.

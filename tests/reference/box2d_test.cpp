@@ -1,8 +1,10 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <variant>
 
 #include "tests/reference/support.h"
+#include "tests/reference/switches.h"
 
 namespace carom {
 namespace {
@@ -205,6 +207,20 @@ TEST(Box2d, DefaultProfile_LosesSlowBounces) {
   EXPECT_NEAR(after(box2d(), scene, "default")[0].velocity.y(), 0.0, 1e-6);
   EXPECT_NEAR(after(box2d(), scene, "faithful")[0].velocity.y(), 0.9, rounding());
   EXPECT_EQ(std::get<double>(after(box2d(), scene, "default").settings().at("velocity_threshold_mps")), 1.0);
+}
+
+TEST(Box2d, Switches_MakeOneProfileTheOther_AllTogether) {
+  EXPECT_THAT(all_switched_is_not_the_other(box2d()), testing::IsEmpty());
+}
+
+TEST(Box2d, Switch_MovesItsOwnSettingOnly) {
+  EXPECT_THAT(one_switched_moves_others(box2d()), testing::IsEmpty());
+}
+
+TEST(Box2d, UnknownSwitch_IsRefused) {
+  const Scenario scene = scene_for_switches();
+  EXPECT_THROW(box2d().create_switched(scene, "default", std::vector<std::string>{"warmth"}),
+               std::logic_error);
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <variant>
 
 #include "tests/reference/support.h"
+#include "tests/reference/switches.h"
 
 namespace carom {
 namespace {
@@ -279,6 +281,46 @@ TEST(BulletModules, SingleAndDouble_RunSideBySide_InOneProcess) {
   EXPECT_NEAR(single.kinetic_energy() / energy, 1.0, 1e-6);
   EXPECT_NEAR(twice.kinetic_energy() / energy, 1.0, 1e-14);
   EXPECT_LT(other.kinetic_energy() / energy, 0.99);
+}
+
+TEST_P(Bullet, Switches_MakeOneProfileTheOther_AllTogether) {
+  EXPECT_THAT(all_switched_is_not_the_other(bullet_), testing::IsEmpty());
+}
+
+TEST_P(Bullet, Switch_MovesItsOwnSettingOnly) {
+  EXPECT_THAT(one_switched_moves_others(bullet_), testing::IsEmpty());
+}
+
+// What really changes the energy of a dropped ball in the default profile, one cause at a time. Bullet's
+// target for the velocity after an impact at the speed v is e v, less d/h for a surface that is still d away
+// (so that the ball just reaches it in the step h), plus erp2 δ/h for one that overlaps by δ.
+TEST_P(Bullet, DefaultContactAtADistance_TakesDistanceOverStepFromTheBounce) {
+  constexpr double kSpeed_mps = 2.0;
+  constexpr double kDistance_m = 1e-3;  // contacts begin at 0.02 r = 2 mm
+  Scenario scene = scene_of(dimension_, 1e-3, 1);
+  scene.walls = {{Vec3::UnitY(), 0.0}};
+  scene.balls = {ball(1.0, 0.1, Vec3(0, 0.1 + kDistance_m, 0), Vec3(0, -kSpeed_mps, 0))};
+  // The place is off by a rounding, which 1/h makes a thousand times larger.
+  const double tolerance = 8.0 * epsilon(bullet_) * (kSpeed_mps + 0.1 / scene.step_s);
+  EXPECT_NEAR(after(bullet_, scene, "default")[0].velocity.y(), kSpeed_mps - kDistance_m / scene.step_s,
+              tolerance);
+  const auto cured =
+      bullet_.create_switched(scene, "default", std::vector<std::string>{"contact_processing_threshold_m"});
+  // Nothing has touched yet.
+  EXPECT_EQ(states_after(*cured, scene)[0].velocity.y(), -kSpeed_mps);
+}
+
+TEST_P(Bullet, DefaultErp_AddsAFifthOfTheOverlapOverTheStepToTheBounce) {
+  constexpr double kSpeed_mps = 2.0;
+  constexpr double kOverlap_m = 1e-3;
+  Scenario scene = scene_of(dimension_, 1e-3, 1);
+  scene.walls = {{Vec3::UnitY(), 0.0}};
+  scene.balls = {ball(1.0, 0.1, Vec3(0, 0.1 - kOverlap_m, 0), Vec3(0, -kSpeed_mps, 0))};
+  const double tolerance = 8.0 * epsilon(bullet_) * (kSpeed_mps + 0.1 / scene.step_s);
+  EXPECT_NEAR(after(bullet_, scene, "default")[0].velocity.y(), kSpeed_mps + 0.2 * kOverlap_m / scene.step_s,
+              tolerance);
+  const auto cured = bullet_.create_switched(scene, "default", std::vector<std::string>{"erp2"});
+  EXPECT_NEAR(states_after(*cured, scene)[0].velocity.y(), kSpeed_mps, tolerance);
 }
 
 }  // namespace
