@@ -14,4 +14,9 @@ ExitCode list_command(const Options& options);
 /// @throws InputError before anything is run or written; MachineError.
 ExitCode compare_command(const Options& options);
 
+/// carom explain: switch the engine's settings one by one, print which explains its divergence. Exit code
+/// `violated` where the run that is to be explained does not end well.
+/// @throws InputError before anything is run; MachineError.
+ExitCode explain_command(const Options& options);
+
 }  // namespace carom

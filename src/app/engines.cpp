@@ -9,8 +9,8 @@
 #include "carom/carom_engine.h"
 #include "core/error.h"
 #include "engine/modules.h"
-#include "reference/engine_table.h"
 #include "reference/closed_form/closed_form.h"
+#include "reference/engine_table.h"
 
 namespace carom {
 

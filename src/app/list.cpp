@@ -5,6 +5,7 @@
 #include "app/engines.h"
 #include "app/layout.h"
 #include "carom/carom_engine.h"
+#include "report/words.h"
 #include "scenario/catalog.h"
 #include "scenario/features.h"
 #include "scenario/parse.h"
@@ -21,23 +22,8 @@ void list_scenarios() {
   }
 }
 
-constexpr std::size_t kColumns = 80;
-
-/// Words after an indented heading, broken into lines of a terminal's width.
 void print_wrapped(std::string_view heading, std::string_view text) {
-  const std::string indent(heading.size(), ' ');
-  std::string line(heading);
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    if (line.size() + 1 + end > kColumns && line.size() > heading.size()) {
-      fmt::print("{}\n", line);
-      line = indent;
-    }
-    if (line.size() > heading.size()) line += ' ';
-    line += text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  fmt::print("{}\n", line);
+  fmt::print("{}", wrapped(heading, text));
 }
 
 void list_engine(const EngineInfo& info) {

@@ -18,7 +18,9 @@ int run(int argc, char** argv) {
   const Parsed parsed = parse_options(argc, argv);
   if (parsed.exit_code) return *parsed.exit_code;
   const Options& options = parsed.options;
-  return static_cast<int>(options.command == "list" ? list_command(options) : compare_command(options));
+  if (options.command == "list") return static_cast<int>(list_command(options));
+  if (options.command == "explain") return static_cast<int>(explain_command(options));
+  return static_cast<int>(compare_command(options));
 }
 
 /// What was printed may still wait in a buffer, and a full disk shows only when it leaves.

@@ -10,6 +10,8 @@
 #include <limits>
 #include <thread>
 
+#include "scenario/metric.h"
+
 namespace carom {
 
 namespace {
@@ -47,11 +49,8 @@ CLI::Validator not_empty() {
       [](const std::string& text) { return text.empty() ? "found nothing, allowed: a path" : ""; }, "");
 }
 
-void add_scene_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scenes, "an id, a path, a group (impact/), or all")->required();
-  command.add_option("--engine", options.engines, "an engine, or engine@profile; may be given several times")
-      ->expected(1)
-      ->take_all();
+/// What every command takes that runs scenes.
+void add_run_options(CLI::App& command, Options& options) {
   command.add_option("--engines-from", options.engines_from, "a folder with further engine modules (*.so)")
       ->expected(1)
       ->take_all();
@@ -61,6 +60,14 @@ void add_scene_options(CLI::App& command, Options& options) {
       ->check(seed());
   command.add_option("--json", options.json_file, "write the results as JSON to this file")
       ->check(not_empty());
+}
+
+void add_scene_options(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scenes, "an id, a path, a group (impact/), or all")->required();
+  command.add_option("--engine", options.engines, "an engine, or engine@profile; may be given several times")
+      ->expected(1)
+      ->take_all();
+  add_run_options(command, options);
   command.add_flag("--all-balls", options.all_balls, "list the final state of every ball in the JSON");
 }
 
@@ -128,9 +135,19 @@ Parsed parse_options(int argc, char** argv) {
       ->check(not_empty());
   add_common_options(*check, options);
 
+  CLI::App* explain = app.add_subcommand("explain", "which of an engine's settings explains its divergence");
+  explain->add_option("SCENE", options.scenes, "an id or a path")->required()->expected(1);
+  explain->add_option("--engine", options.engines, "an engine, or engine@profile")->required()->expected(1);
+  explain
+      ->add_option("--metric", options.metric,
+                   "what is explained (default: position where there is a truth, else energy)")
+      ->check(CLI::IsMember(std::vector<std::string>(kMetricNames.begin(), kMetricNames.end())));
+  add_run_options(*explain, options);
+  add_common_options(*explain, options);
+
   CLI::App* help = app.add_subcommand("help", "help on a command");
-  help->add_option("COMMAND", options.topic, "list, run, check or help")
-      ->check(CLI::IsMember({"list", "run", "check", "help"}));
+  help->add_option("COMMAND", options.topic, "list, run, check, explain or help")
+      ->check(CLI::IsMember({"list", "run", "check", "explain", "help"}));
 
   // Once a command line is parsed, help() is that of the command it names.
   const std::string overview = app.help();

@@ -42,8 +42,8 @@ std::string departure_row(const Scenario& scene, const RunComparison& run) {
       run.judgement->accuracy == Accuracy::within_tolerance) {
     return {};
   }
-  return fmt::format("  {}: {}, {}\n", run.run.label(), name_of(run.judgement->accuracy),
-                     departure(scene, run));
+  return wrapped(fmt::format("  {}:", run.run.label()),
+                 fmt::format("{}, {}", name_of(run.judgement->accuracy), departure(scene, run)));
 }
 
 std::string run_row(const RunComparison& result, bool color) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace carom {
 
 std::string short_number(std::optional<double> value) {
@@ -21,6 +23,13 @@ std::string describe(const Scenario& scene, const TrueImpact& impact) {
   return fmt::format("ball {} met {}", impact.ball, wall);
 }
 
+/// Characters of UTF-8, each a column wide: the bytes that do not continue one.
+std::size_t columns(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
+  }));
+}
+
 }  // namespace
 
 std::string departure(const Scenario& scene, const RunComparison& run) {
@@ -38,6 +47,24 @@ std::string departure(const Scenario& scene, const RunComparison& run) {
     text += fmt::format(", wrong since {} at t = {} s", describe(scene, *cause), short_number(cause->time_s));
   }
   return text;
+}
+
+std::string wrapped(std::string_view heading, std::string_view text) {
+  const std::string indent(columns(heading), ' ');
+  std::string lines;
+  std::string line(heading);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const bool empty = columns(line) == indent.size();
+    if (!empty && columns(line) + 1 + columns(text.substr(0, end)) > kColumns) {
+      lines += line + "\n";
+      line = indent;
+    }
+    if (columns(line) > indent.size()) line += ' ';
+    line += text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines + line + "\n";
 }
 
 std::vector<std::string> violations(const SceneComparison& scene, const RunComparison& run) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "comparison/results.h"
@@ -9,6 +12,12 @@ namespace carom {
 
 /// A number for people: three significant digits, "n/a" where there is none.
 std::string short_number(std::optional<double> value);
+
+/// The width of a terminal that every text is made for.
+inline constexpr std::size_t kColumns = 80;
+
+/// Words after an indented heading, broken into lines of a terminal's width, each with its end.
+std::string wrapped(std::string_view heading, std::string_view text);
 
 /// When and by what a run left the truth: "left the truth at t = 1.23 s, when balls 3 and 7 met"; that it did
 /// not, where it did not; empty without a judgement.
