@@ -11,6 +11,7 @@
 #include "engine/modules.h"
 #include "reference/closed_form/closed_form.h"
 #include "reference/engine_table.h"
+#include "reference/exact/exact.h"
 
 namespace carom {
 
@@ -94,7 +95,7 @@ EngineSource EngineCatalog::find(const std::string& name) const {
 }
 
 std::vector<std::shared_ptr<const TruthSource>> truth_sources() {
-  return {make_closed_form_truth()};
+  return {make_closed_form_truth(), make_exact_truth()};
 }
 
 }  // namespace carom

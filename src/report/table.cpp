@@ -42,7 +42,7 @@ std::string departure_row(const Scenario& scene, const RunComparison& run) {
       run.judgement->accuracy == Accuracy::within_tolerance) {
     return {};
   }
-  return wrapped(fmt::format("  {}:", run.run.label()),
+  return wrapped(fmt::format("  {}: ", run.run.label()),
                  fmt::format("{}, {}", name_of(run.judgement->accuracy), departure(scene, run)));
 }
 

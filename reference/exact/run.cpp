@@ -1,0 +1,342 @@
+#include "reference/exact/run.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/random.h"
+
+namespace carom::exact {
+
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Half of the digits below one.
+Real half_of_digits(const Digits& digits) {
+  return pow(Real(10), -digits.count() / 2);
+}
+
+/// The sooner is on top of the heap.
+bool later(const Prospect& a, const Prospect& b) {
+  return a.earliest_s > b.earliest_s;
+}
+
+/// In steps of 10 ns: looking at a ball in double precision, solving for a meeting, carrying out an impact.
+constexpr std::int64_t kLook = 1;
+std::int64_t cost_of_meeting(int digits) {
+  return 250 + digits / 2;
+}
+std::int64_t cost_of_impact(int digits) {
+  return 4 * cost_of_meeting(digits);
+}
+
+/// A ball that leaves a surface and is back after so small a part of the duration comes to rest on it: no run
+/// of doubles can tell. It is the same for any number of digits, and far above the rounding of forty.
+constexpr double kRest = 1e-17;
+
+/// The seed of a twin's random direction: any number will do, but always the same.
+constexpr std::uint64_t kDirection = 20;
+
+Vector random_direction(Random& random, int dimension) {
+  Vec3 direction = Vec3::Zero();
+  for (int axis = 0; axis < dimension; ++axis) direction[axis] = random.uniform(-1.0, 1.0);
+  return Vector(direction);
+}
+
+}  // namespace
+
+Run::Run(const Scenario& scene, const Digits& digits, double end_s, Budget& budget)
+    : scene_(scene),
+      digits_(digits.count()),
+      setting_(scene),
+      slack_{half_of_digits(digits) * setting_.scale_m, half_of_digits(digits) * setting_.speed_mps},
+      instant_s_(half_of_digits(digits) * end_s),
+      end_s_(end_s),
+      shadow_(scene, setting_, end_s),
+      budget_(budget),
+      perturbation_m_(0),
+      due_(scene.balls.size()),
+      now_s_(0),
+      moment_s_(0) {
+  for (const Ball& ball : scene.balls) {
+    bodies_.push_back({0, Vector(ball.position), Vector(ball.velocity), Vector(ball.spin)});
+  }
+}
+
+void Run::perturb(const Real& change_m) {
+  const Digits digits(digits_);
+  Random random(kDirection);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Vector place = random_direction(random, scene_.dimension) * change_m;
+    const Vector velocity = random_direction(random, scene_.dimension) * Real(change_m / end_s_);
+    if (!setting_.matter[i].movable()) continue;
+    bodies_[i].position_m += place;
+    bodies_[i].velocity_mps += velocity;
+    perturbation_m_ = std::max({perturbation_m_, length(place), Real(length(velocity) * end_s_)});
+  }
+}
+
+/// What the scene's numbers leave open of a distance by now, m. They are decimals that were rounded to
+/// doubles: the places and the radii of two balls, ε/2 of the scale each, and their velocities, ε/2 of the
+/// speed each over the time since; twice that.
+double Run::rounding_m() const {
+  return 4.0 * kEpsilon * (setting_.scale_m + shadow_.top_speed_mps() * now_s_.convert_to<double>());
+}
+
+void Run::start() {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) shadow_.set(i, bodies_[i]);
+  shadow_.advance(0.0);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) predict(i);
+  started_ = true;
+}
+
+bool Run::follow(const Moment& moment) {
+  const Digits digits(digits_);
+  if (!started_) start();
+  moment_s_ = Real(moment.step_s) * moment.steps;
+  const Real until_s = moment_s_ + instant_s_;
+  while (!stop_) {
+    const std::optional<std::size_t> next = soonest();
+    if (!next || *due_[*next].time_s > until_s) return true;
+    perform(*next);
+  }
+  return false;
+}
+
+/// By the rounded times, and where those are the same by all digits. (Rounding keeps the order.)
+std::optional<std::size_t> Run::soonest() const {
+  std::optional<std::size_t> soonest;
+  double rounded_s = kNever;
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    if (due_[i].rounded_s > rounded_s || !due_[i].time_s) continue;
+    if (due_[i].rounded_s == rounded_s && *due_[i].time_s >= *due_[*soonest].time_s) continue;
+    soonest = i;
+    rounded_s = due_[i].rounded_s;
+  }
+  return soonest;
+}
+
+std::optional<Real> Run::meeting_s(std::size_t ball, const Prospect& prospect) const {
+  const Body& own = bodies_[ball];
+  const Vector place = setting_.position(ball, own, now_s_);
+  const Vector velocity = setting_.velocity(ball, own, now_s_);
+  std::optional<Real> wait;
+  if (prospect.wall) {
+    const Plane& wall = setting_.walls[prospect.partner];
+    const Real gap = dot(place, wall.normal) - wall.offset_m - setting_.matter[ball].radius_m;
+    const Real fall = setting_.falls(ball) ? dot(setting_.gravity_mps2, wall.normal) : Real(0);
+    wait = wall_reached(gap, dot(velocity, wall.normal), fall, slack_);
+  } else {
+    const std::size_t k = prospect.partner;
+    Relative motion{setting_.position(k, bodies_[k], now_s_) - place,
+                    setting_.velocity(k, bodies_[k], now_s_) - velocity,
+                    {0, 0, 0},
+                    setting_.falls(ball) != setting_.falls(k)};
+    if (motion.accelerated) motion.a = setting_.gravity_mps2 * Real(setting_.falls(k) ? 1 : -1);
+    const Real distance = setting_.matter[ball].radius_m + setting_.matter[k].radius_m;
+    wait = balls_meet(motion, distance, slack_, end_s_ - now_s_);
+  }
+  if (wait) *wait += now_s_;
+  return wait;
+}
+
+/// The ball's soonest impact of all: those of whom it surely does not meet before the soonest found so far
+/// are not looked for.
+void Run::predict(std::size_t ball) {
+  shadow_.prospects(ball, prospects_);
+  budget_.left -= kLook * static_cast<std::int64_t>(bodies_.size());
+  std::make_heap(prospects_.begin(), prospects_.end(), later);
+  Due& due = due_[ball];
+  due = {std::nullopt, kNever, 0, false};
+  while (!prospects_.empty() && prospects_.front().earliest_s <= due.rounded_s) {
+    std::pop_heap(prospects_.begin(), prospects_.end(), later);
+    const Prospect prospect = prospects_.back();
+    prospects_.pop_back();
+    const std::optional<Real> time_s = meeting_s(ball, prospect);
+    budget_.left -= cost_of_meeting(digits_);
+    if (!time_s || *time_s > end_s_ || (due.time_s && *time_s >= *due.time_s)) continue;
+    due = {time_s, time_s->convert_to<double>(), prospect.partner, prospect.wall};
+  }
+}
+
+/// After an impact of these two, and of all who had counted on one of them.
+void Run::predict_anew(const Touch& touch) {
+  const auto hit = [&](std::size_t ball) {
+    return ball == touch.ball || (!touch.wall && ball == touch.partner);
+  };
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const Due& due = due_[i];
+    if (hit(i) || (due.time_s && !due.wall && hit(due.partner))) predict(i);
+  }
+}
+
+void Run::perform(std::size_t ball) {
+  const Due& due = due_[ball];
+  const Touch touch{static_cast<std::uint32_t>(ball), due.partner, due.wall};
+  now_s_ = std::max(now_s_, *due.time_s);
+  shadow_.advance(now_s_.convert_to<double>());
+  budget_.left -= cost_of_impact(digits_) + 3 * kLook * static_cast<std::int64_t>(bodies_.size());
+  if (budget_.left < 0) {
+    stop_at(now_s_, "", true);
+    return;
+  }
+  if (goes_on(touch)) carry_out(touch);
+}
+
+Real Run::gap_m(const Touch& touch, const Body& ball) const {
+  const Real& radius = setting_.matter[touch.ball].radius_m;
+  if (touch.wall) {
+    const Plane& wall = setting_.walls[touch.partner];
+    return dot(ball.position_m, wall.normal) - wall.offset_m - radius;
+  }
+  const Vector place = setting_.position(touch.partner, bodies_[touch.partner], now_s_);
+  return length(place - ball.position_m) - radius - setting_.matter[touch.partner].radius_m;
+}
+
+/// Adds the contacts of a ball of the cluster, and the balls that they bring in.
+void Run::add_touches(std::uint32_t ball, const Real& gap, Cluster& cluster) {
+  shadow_.near(ball, gap.convert_to<double>(), prospects_);
+  for (const Prospect& prospect : prospects_) {
+    const Touch touch{ball, prospect.partner, prospect.wall};
+    const Touch turned{prospect.partner, ball, false};
+    const auto known = [&](const Touch& t) { return t == touch || (!touch.wall && t == turned); };
+    if (std::any_of(cluster.touches.begin(), cluster.touches.end(), known)) continue;
+    if (gap_m(touch, cluster.bodies.at(ball)) > gap) continue;
+    cluster.touches.push_back(touch);
+    if (touch.wall) continue;
+    cluster.bodies.try_emplace(touch.partner, setting_.moved(touch.partner, bodies_[touch.partner], now_s_));
+  }
+}
+
+Cluster Run::cluster_of(const Touch& touch) {
+  Cluster cluster;
+  cluster.touches.push_back(touch);
+  cluster.bodies.emplace(touch.ball, setting_.moved(touch.ball, bodies_[touch.ball], now_s_));
+  if (!touch.wall) {
+    cluster.bodies.emplace(touch.partner, setting_.moved(touch.partner, bodies_[touch.partner], now_s_));
+  }
+  const Real gap = rounding_m();
+  std::set<std::uint32_t> done;
+  while (done.size() < cluster.bodies.size()) {
+    const auto next = std::find_if(cluster.bodies.begin(), cluster.bodies.end(),
+                                   [&](const auto& entry) { return !done.contains(entry.first); });
+    done.insert(next->first);
+    add_touches(next->first, gap, cluster);
+  }
+  return cluster;
+}
+
+/// Whether an impact that is due has one outcome; if not, stops.
+bool Run::goes_on(const Touch& touch) {
+  const Cluster cluster = cluster_of(touch);
+  if (cluster.touches.size() == 1) return true;
+  // Outcomes that should be the same differ by the rounding of the scene's numbers, as the contacts' gaps do.
+  const Real tolerance = 16.0 * kEpsilon * setting_.speed_mps;
+  const Order order = judge(setting_, scene_, cluster, slack_, tolerance);
+  if (order == Order::single) return true;
+  std::vector<std::uint32_t> balls;
+  for (const auto& [ball, body] : cluster.bodies) balls.push_back(ball);
+  tell_tie(instant_s_, balls, true);
+  if (order == Order::irrelevant) return true;
+  const std::string who = balls.size() == 1 ? fmt::format("ball {} and walls", balls.front())
+                                            : fmt::format("balls {}", fmt::join(balls, ", "));
+  stop_at(now_s_, order == Order::matters
+                      ? fmt::format("impacts of {} come at one moment, and what follows depends on their "
+                                    "order",
+                                    who)
+                      : fmt::format("{} touch when one of them is hit, and how an impact is passed on along "
+                                    "touching bodies has no unique answer",
+                                    who));
+  return false;
+}
+
+void Run::carry_out(const Touch& touch) {
+  Body& ball = bodies_[touch.ball];
+  ball = setting_.moved(touch.ball, ball, now_s_);
+  Body& partner = touch.wall ? ball : bodies_[touch.partner];
+  if (!touch.wall) partner = setting_.moved(touch.partner, partner, now_s_);
+  Encounter encounter(setting_, scene_, touch, ball, partner);
+  const Real approach = encounter.approach_mps();
+  if (!impacts_.empty()) {
+    const TrueImpact& last = impacts_.back();
+    const bool shared =
+        last.ball == touch.ball || (!last.wall && last.partner == touch.ball) ||
+        (!touch.wall && (last.ball == touch.partner || (!last.wall && last.partner == touch.partner)));
+    if (!shared && (now_s_ - last.time_s) * approach <= rounding_m()) {
+      std::vector<std::uint32_t> balls = {last.ball, touch.ball};
+      if (!last.wall) balls.push_back(last.partner);
+      if (!touch.wall) balls.push_back(touch.partner);
+      tell_tie(instant_s_, balls, false);
+    }
+  }
+  if (approach > 0) account(touch, encounter, encounter.collide());
+  impacts_.push_back({now_s_.convert_to<double>(), touch.ball, touch.partner, touch.wall});
+  const Real pressing = encounter.pressing_mps2();
+  if (pressing > 0 && -2 * encounter.approach_mps() <= pressing * kRest * end_s_) {
+    stop_at(now_s_, fmt::format("ball {} comes to rest on {} {}: a contact that lasts is no impact",
+                                touch.ball, touch.wall ? "wall" : "ball", touch.partner));
+    return;
+  }
+  shadow_.set(touch.ball, ball);
+  if (!touch.wall) shadow_.set(touch.partner, partner);
+  shadow_.advance(now_s_.convert_to<double>());
+  predict_anew(touch);
+}
+
+/// Walls and immovable balls push movable ones, at the contact.
+void Run::account(const Touch& touch, const Encounter& encounter, const Vector& impulse) {
+  const bool on_ball = setting_.matter[touch.ball].movable();
+  const bool on_partner = !touch.wall && setting_.matter[touch.partner].movable();
+  if (on_ball && on_partner) return;
+  const std::size_t pushed = on_ball ? touch.ball : touch.partner;
+  // The impulse is on b and the normal points to b, which is the ball at a wall and else the partner.
+  const bool is_b = touch.wall || on_partner;
+  const Real sign = is_b ? 1 : -1;
+  const Vector push = impulse * sign;
+  const Vector contact =
+      bodies_[pushed].position_m - encounter.normal() * Real(sign * setting_.matter[pushed].radius_m);
+  external_impulse_ += push;
+  external_angular_impulse_ += cross(contact, push);
+}
+
+void Run::tell_tie(const Real& window_s, std::vector<std::uint32_t> balls, bool shares_ball) {
+  const double time_s = now_s_.convert_to<double>();
+  const bool more = !ties_.empty() && now_s_ - ties_.back().time_s <= window_s + kEpsilon * time_s;
+  if (more) {
+    Tie& tie = ties_.back();
+    tie.shares_ball = tie.shares_ball || shares_ball;
+    balls.insert(balls.end(), tie.balls.begin(), tie.balls.end());
+  }
+  std::sort(balls.begin(), balls.end());
+  balls.erase(std::unique(balls.begin(), balls.end()), balls.end());
+  if (more) {
+    ties_.back().balls = std::move(balls);
+  } else if (ties_.size() < Solution::kMostTiesTold) {
+    ties_.push_back({time_s, std::move(balls), shares_ball});
+  }
+}
+
+void Run::stop_at(const Real& time_s, std::string reason, bool budget) {
+  stop_ = Stop{time_s.convert_to<double>(), std::move(reason), budget};
+}
+
+Body Run::state(std::size_t ball) const {
+  const Digits digits(digits_);
+  return setting_.moved(ball, bodies_[ball], moment_s_);
+}
+
+Tally Run::tally() const {
+  Tally tally;
+  tally.impacts = static_cast<std::int64_t>(impacts_.size());
+  tally.external_impulse = rounded(external_impulse_);
+  tally.external_angular_impulse = rounded(external_angular_impulse_);
+  return tally;
+}
+
+}  // namespace carom::exact
