@@ -16,15 +16,21 @@ bool known_at(const Truth& truth, std::size_t frame) {
   return !truth.solution.known_until_s || truth.trajectory.time(frame) <= *truth.solution.known_until_s;
 }
 
-/// L of (1), m.
-double length_scale_m(const Truth& truth, double duration_s) {
-  double largest = 0.0;
+/// X and L of (1), m.
+struct Lengths {
+  double place = 0.0;
+  double reach = 0.0;
+};
+
+Lengths lengths_of(const Truth& truth, double duration_s) {
+  Lengths lengths;
   for (std::size_t k = 0; k < truth.trajectory.frames() && known_at(truth, k); ++k) {
     for (const BallState& ball : truth.trajectory.frame(k)) {
-      largest = std::max({largest, ball.position.norm(), duration_s * ball.velocity.norm()});
+      lengths.place = std::max(lengths.place, ball.position.norm());
+      lengths.reach = std::max({lengths.reach, lengths.place, duration_s * ball.velocity.norm()});
     }
   }
-  return largest;
+  return lengths;
 }
 
 /// Of the ball that has the most, up to each frame; half of all impacts where they are not told one by one.
@@ -80,7 +86,7 @@ std::optional<Slope> slope_of(const std::vector<double>& x, const std::vector<do
 
 std::vector<double> rounding_growth_m(const Scenario& scene, const Truth& truth, double epsilon,
                                       std::int64_t steps) {
-  const double length_m = length_scale_m(truth, scene.duration_s);
+  const Lengths lengths = lengths_of(truth, scene.duration_s);
   const std::vector<double> impacts = most_impacts_of_a_ball(truth);
   const std::vector<double>& amplification = truth.solution.amplification;
   const double directions = amplification.empty()
@@ -91,9 +97,10 @@ std::vector<double> rounding_growth_m(const Scenario& scene, const Truth& truth,
   for (std::size_t k = 0; k < truth.trajectory.frames() && known_at(truth, k); ++k) {
     if (k < amplification.size()) largest = std::max(largest, amplification[k]);
     const double share = static_cast<double>(k) / static_cast<double>(truth.trajectory.frames() - 1);
-    const double roundings =
-        kRoundingsOfImpact * (1.0 + impacts[k]) + std::sqrt(share * static_cast<double>(steps));
-    growth.push_back(roundings * directions * largest * epsilon * length_m);
+    const double taken = share * static_cast<double>(steps);
+    const double rounded_m = (kRoundingsOfImpact * (1.0 + impacts[k]) + std::sqrt(taken)) * lengths.reach +
+                             0.5 * taken * lengths.place;
+    growth.push_back(directions * largest * epsilon * rounded_m);
   }
   return growth;
 }

@@ -24,13 +24,12 @@ Predictability predictability_of(const Scenario& scene, const Truth& truth, doub
 ///
 /// A ball's position and velocity take roundings of ε|x| and ε|v| with each impact and each step. The
 /// velocity's becomes ε|v|T within the duration T; so each is at most ε L, L = max(|x|, |v| T) over all balls
-/// and frames. One made at a time t' has grown by A(t)/A(t') <= Â(t), the largest A so far. So after n of
-/// them
-///   e(t) <= n(t) √(2dN) Â(t) ε L,   n = κ (1 + impacts) + √steps,                       (1)
+/// and frames. One made at a time t' has grown by A(t)/A(t') <= Â(t), the largest A so far. So in the end
+///   e(t) <= √(2dN) Â(t) ε [(κ (1 + impacts) + √steps) L + ½ steps X],   X = max |x|,   (1)
 /// with κ = 8 roundings an impact (the terms of the impulse, the time and the place), counted for the ball
-/// that has had the most; those of the steps are as often up as down and add up like a random walk; √(2dN)
-/// because A was measured along one random direction of phase space, which shows that part of the largest
-/// growth.
+/// that has had the most. Steps round velocities up as often as down, like a random walk; but of a ball that
+/// moves by the same amount in every step they may round the position the same way each time. √(2dN) because
+/// A was measured along one random direction of phase space, which shows that part of the largest growth.
 ///
 /// @param epsilon  of the engine's precision
 /// @param steps    that the engine took over the duration
