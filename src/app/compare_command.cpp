@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/coefficients.h"
 #include "app/commands.h"
 #include "app/layout.h"
 #include "app/machine.h"
@@ -42,6 +43,12 @@ SceneComparison compare_scene(const ScenarioPtr& scene, const std::vector<Engine
     progress.advance(fmt::format("{} {}", scene->id, engines[done].source.name));
   });
   return compare(scene, std::move(truth), std::move(runs), engines_under_test(engines));
+}
+
+/// Whether the report is of everything: then it says too what impacts deliver, apart from any scene.
+bool full_report(const Options& options) {
+  const std::vector<std::string>& scenes = options.scenes;
+  return !options.report_folder.empty() && std::find(scenes.begin(), scenes.end(), "all") != scenes.end();
 }
 
 void write_outputs(const Options& options, const Results& results) {
@@ -88,6 +95,9 @@ ExitCode compare_command(const Options& options) {
     for (const ScenarioPtr& scene : scenes) {
       results.scenes.push_back(compare_scene(scene, engines, options, progress));
     }
+  }
+  if (full_report(options)) {
+    results.coefficients = measure_coefficients(engines, limits, options.parallel);
   }
   if (!options.quiet || !results.holds()) fmt::print("{}", results_table(results, options.color));
   write_outputs(options, results);

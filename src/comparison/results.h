@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "comparison/coefficients.h"
 #include "comparison/comparison.h"
 #include "engine/engine.h"
 
@@ -29,6 +30,7 @@ struct Results {
   std::vector<EngineInfo> engines;  ///< those that took part
   std::vector<MissingEngine> missing;
   std::vector<SceneComparison> scenes;
+  std::vector<CoefficientPanel> coefficients;  ///< empty where they were not measured
 
   /// Whether every gate holds and every engine under test did what was asked of it.
   bool holds() const {

@@ -158,6 +158,25 @@ Json scene_json(const SceneComparison& comparison, bool all_balls) {
   return json;
 }
 
+Json coefficient_json(const CoefficientPanel& panel) {
+  Json json = {{"coefficient", panel.coefficient == Coefficient::restitution ? "restitution" : "friction"},
+               {"on", panel.wall ? "wall" : "ball"},
+               {"nominal", panel.nominal},
+               {"speeds_mps", panel.speeds_mps},
+               {"delivered", Json::object()}};
+  for (const CoefficientCurve& curve : panel.curves) {
+    Json values = Json::array();
+    for (const std::optional<Delivered>& got : curve.values) {
+      values.push_back(got ? Json{{"value", number_or_null(got->value)},
+                                  {"lowest", number_or_null(got->lowest)},
+                                  {"highest", number_or_null(got->highest)}}
+                           : Json(nullptr));
+    }
+    json["delivered"][curve.label] = std::move(values);
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string results_json(const Results& results, bool all_balls) {
@@ -173,6 +192,12 @@ std::string results_json(const Results& results, bool all_balls) {
     json["not_built"].push_back({{"engine", engine.name}, {"package", engine.package}});
   }
   for (const SceneComparison& scene : results.scenes) json["scenes"].push_back(scene_json(scene, all_balls));
+  if (!results.coefficients.empty()) {
+    json["coefficients"] = Json::array();
+    for (const CoefficientPanel& panel : results.coefficients) {
+      json["coefficients"].push_back(coefficient_json(panel));
+    }
+  }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -296,7 +296,7 @@ TEST_P(Bullet, Switch_MovesItsOwnSettingOnly) {
 // (so that the ball just reaches it in the step h), plus erp2 δ/h for one that overlaps by δ.
 TEST_P(Bullet, DefaultContactAtADistance_TakesDistanceOverStepFromTheBounce) {
   constexpr double kSpeed_mps = 2.0;
-  constexpr double kDistance_m = 1e-3;  // contacts begin at 0.02 r = 2 mm
+  constexpr double kDistance_m = 1e-3;
   Scenario scene = scene_of(dimension_, 1e-3, 1);
   scene.walls = {{Vec3::UnitY(), 0.0}};
   scene.balls = {ball(1.0, 0.1, Vec3(0, 0.1 + kDistance_m, 0), Vec3(0, -kSpeed_mps, 0))};
@@ -308,6 +308,20 @@ TEST_P(Bullet, DefaultContactAtADistance_TakesDistanceOverStepFromTheBounce) {
       bullet_.create_switched(scene, "default", std::vector<std::string>{"contact_processing_threshold_m"});
   // Nothing has touched yet.
   EXPECT_EQ(states_after(*cured, scene)[0].velocity.y(), -kSpeed_mps);
+}
+
+TEST_P(Bullet, DefaultContacts_BeginNearAWall_ButNotNearABall) {
+  const double reach_m = 0.02 * std::sqrt(3.0) * 0.1;
+  for (const double share : {0.99, 1.01}) {
+    Scenario scene = scene_of(dimension_, 1e-3, 1);
+    scene.balls = {ball(1.0, 0.1, Vec3(0, 0.1 + share * reach_m, 0), Vec3(0, -2.0, 0))};
+    scene.walls = {{Vec3::UnitY(), 0.0}};
+    const double at_wall = after(bullet_, scene, "default")[0].velocity.y();
+    EXPECT_EQ(at_wall == -2.0, share > 1.0) << at_wall;
+    scene.walls.clear();
+    scene.balls.push_back(ball(1.0, 0.1, Vec3(0, -0.1, 0)));
+    EXPECT_EQ(after(bullet_, scene, "default")[0].velocity.y(), -2.0);
+  }
 }
 
 TEST_P(Bullet, DefaultErp_AddsAFifthOfTheOverlapOverTheStepToTheBounce) {

@@ -327,6 +327,29 @@ TEST(Page, DescribesEveryDrawing_InWords) {
   }
 }
 
+TEST(Page, ShowsWhatImpactsDeliver_WhereItWasMeasured) {
+  Results results = usual_results();
+  EXPECT_THAT(page_of(results), Not(HasSubstr("id=\"coefficients\"")));
+  const std::vector<double> speeds = {0.1, 1.0, 10.0};
+  const auto exactly = [](double value) { return Delivered{value, value, value}; };
+  const CoefficientCurve half = {"carom", {exactly(0.5), exactly(0.5), exactly(0.5)}};
+  const CoefficientCurve rough = {"carom", {exactly(0.3), exactly(0.3), exactly(0.3)}};
+  const CoefficientCurve lossy = {"box2d@default", {std::nullopt, exactly(0.0), Delivered{0.52, 0.5, 0.6}}};
+  results.coefficients = {{Coefficient::restitution, false, 0.5, speeds, {half, lossy}},
+                          {Coefficient::friction, true, 0.3, speeds, {rough}}};
+  const std::string page = page_of(results);
+  pugi::xml_document body;
+  ASSERT_NO_FATAL_FAILURE(parse_body(page, body));
+  const pugi::xml_node section = body.find_node(
+      [](const pugi::xml_node& node) { return std::string(node.attribute("id").value()) == "coefficients"; });
+  ASSERT_TRUE(section);
+  const std::string text = text_of(section);
+  EXPECT_THAT(text, HasSubstr("e of a ball on a ball, 0.5 asked for"));
+  EXPECT_THAT(text, HasSubstr("box2d@default: no bounce up to 1 m/s, then 0.5 to 0.6"));
+  EXPECT_THAT(text, HasSubstr("Every engine delivers what is asked for."));
+  EXPECT_THAT(page, AllOf(Not(HasSubstr("nan")), Not(HasSubstr("inf "))));
+}
+
 TEST(Page, IsTheSameBytes_ForTheSameResults) {
   EXPECT_EQ(page_of(usual_results()), page_of(usual_results()));
 }

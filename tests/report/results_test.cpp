@@ -142,5 +142,19 @@ TEST(Csv, HasARowForEachFrameAndBall_WithAllDigits) {
   EXPECT_THAT(csv, HasSubstr("\n0.5,0,0.30000000000000004,0,0,0.1,0,0,0,0,0\n"));
 }
 
+TEST(Json, Coefficients_AreThere_WhereTheyWereMeasured) {
+  Results results = four_verdicts();
+  EXPECT_FALSE(nlohmann::json::parse(results_json(results, false)).contains("coefficients"));
+  results.coefficients = {
+      {Coefficient::friction, true, 0.3, {0.1, 1.0}, {{"good", {Delivered{0.3, 0.2, 0.4}, std::nullopt}}}}};
+  const nlohmann::json panel = nlohmann::json::parse(results_json(results, false)).at("coefficients").at(0);
+  EXPECT_EQ(panel.at("coefficient"), "friction");
+  EXPECT_EQ(panel.at("on"), "wall");
+  EXPECT_EQ(panel.at("nominal"), 0.3);
+  EXPECT_EQ(panel.at("speeds_mps"), nlohmann::json({0.1, 1.0}));
+  EXPECT_EQ(panel.at("delivered").at("good"),
+            nlohmann::json::parse(R"([{"value": 0.3, "lowest": 0.2, "highest": 0.4}, null])"));
+}
+
 }  // namespace
 }  // namespace carom::test

@@ -3,6 +3,7 @@
 #include "core/files.h"
 #include "report/page/accuracy.h"
 #include "report/page/chapters.h"
+#include "report/page/coefficients.h"
 #include "report/page/costs.h"
 #include "report/page/html.h"
 #include "report/page/overview.h"
@@ -36,6 +37,7 @@ void add_navigation(Node body, const Results& results, bool with_costs) {
   add(bar, "a", {{"href", "#overview"}}, "All scenes");
   if (has_judgements(results)) add(bar, "a", {{"href", "#accuracy"}}, "Who is right");
   if (has_hard_cases(results)) add(bar, "a", {{"href", "#survival"}}, "Hard cases");
+  if (!results.coefficients.empty()) add(bar, "a", {{"href", "#coefficients"}}, "Impacts");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
   if (with_costs) add(bar, "a", {{"href", "#costs"}}, "What effects cost");
@@ -52,6 +54,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_overview(main, results, legend);
   add_accuracy(main, results, legend);
   add_survival(main, results, legend);
+  add_coefficients(main, results.coefficients, legend);
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
