@@ -96,17 +96,20 @@ std::span<const BallState> lane_of(const CoefficientProbe& probe, const Trajecto
 
 std::optional<double> delivered_in(const CoefficientProbe& probe, const Trajectory& trajectory,
                                    std::size_t lane) {
+  const double still_mps = kStopped * probe.speed_mps;
+  // The first frame in which the ball does not approach any more: later it may be put to sleep.
+  std::size_t arrest = 0;
   for (std::size_t frame = 1; frame < trajectory.frames(); ++frame) {
     const auto balls = lane_of(probe, trajectory, frame, lane);
     const Approach approach = approach_of(balls);
-    const bool recedes = approach.opening_mps > kStopped * probe.speed_mps;
-    if (recedes && approach.gap_m > 0.0) return value_of(probe, balls);
+    if (approach.opening_mps > still_mps && approach.gap_m > 0.0) return value_of(probe, balls);
+    if (arrest == 0 && approach.opening_mps >= -still_mps) arrest = frame;
   }
-  const auto last = lane_of(probe, trajectory, trajectory.frames() - 1, lane);
-  const Approach approach = approach_of(last);
-  const bool together = std::abs(approach.gap_m) < kTogetherRadii * kRadius_m;
-  if (!together || std::abs(approach.opening_mps) > kStopped * probe.speed_mps) return std::nullopt;
-  return probe.coefficient == Coefficient::restitution ? std::optional(0.0) : value_of(probe, last);
+  const Approach last = approach_of(lane_of(probe, trajectory, trajectory.frames() - 1, lane));
+  const bool together = std::abs(last.gap_m) < kTogetherRadii * kRadius_m;
+  if (arrest == 0 || !together || std::abs(last.opening_mps) > still_mps) return std::nullopt;
+  if (probe.coefficient == Coefficient::restitution) return 0.0;
+  return value_of(probe, lane_of(probe, trajectory, arrest, lane));
 }
 
 bool same_kind(const CoefficientProbe& probe, const CoefficientPanel& panel) {

@@ -36,16 +36,23 @@ std::string title_of(const CoefficientPanel& panel) {
                      panel.wall ? "wall" : "ball", given(panel.nominal));
 }
 
-/// From zero to a little above the tallest curve.
+/// From zero to the tallest curve, with a little room for markers at both ends.
 Axis axis_of(const CoefficientPanel& panel) {
-  constexpr double kRoom = 1.15;
+  constexpr double kRoom = 1.08;
   double high = panel.nominal;
   for (const CoefficientCurve& curve : panel.curves) {
     for (const std::optional<Delivered>& got : curve.values) {
       if (got) high = std::max(high, std::min(got->highest, kTallest * panel.nominal));
     }
   }
-  return Axis::linear(0.0, kRoom * high);
+  return Axis::linear((1.0 - kRoom) * high, kRoom * high);
+}
+
+/// Powers of ten as their exponents.
+Axis speed_axis(const CoefficientPanel& panel) {
+  constexpr double kRoom = 0.1;
+  return Axis::linear(std::log10(panel.speeds_mps.front()) - kRoom,
+                      std::log10(panel.speeds_mps.back()) + kRoom);
 }
 
 void draw_curve(const Canvas& canvas, const CoefficientPanel& panel, const CoefficientCurve& curve,
@@ -55,7 +62,7 @@ void draw_curve(const Canvas& canvas, const CoefficientPanel& panel, const Coeff
   std::string ranges;
   for (std::size_t i = 0; i < curve.values.size(); ++i) {
     const std::optional<Delivered>& got = curve.values[i];
-    const double x = panel.speeds_mps[i];
+    const double x = std::log10(panel.speeds_mps[i]);
     line.push_back(canvas.at(x, got ? got->value : std::numeric_limits<double>::quiet_NaN()));
     if (!got) continue;
     markers += style.marker(line.back());
@@ -117,11 +124,10 @@ void add_panel(Node parent, const CoefficientPanel& panel, const Legend& legend)
   Node caption = add(figure, "figcaption");
   add(caption, "strong", {}, title + ".");
   say(caption, " " + finding);
-  const Canvas canvas =
-      add_canvas(figure, {title, finding}, Axis::log(panel.speeds_mps.front(), panel.speeds_mps.back()),
-                 axis_of(panel), kWidth_px, kHeight_px, {kSpeedTicks, "speed of the approach, m/s"},
-                 {kValueTicks, std::string(symbol_of(panel.coefficient)) + " delivered"});
-  const double asked = canvas.at(panel.speeds_mps.front(), panel.nominal).y;
+  const Canvas canvas = add_canvas(figure, {title, finding}, speed_axis(panel), axis_of(panel), kWidth_px,
+                                   kHeight_px, {kSpeedTicks, "speed of the approach, m/s, as a power of ten"},
+                                   {kValueTicks, std::string(symbol_of(panel.coefficient)) + " delivered"});
+  const double asked = canvas.at(0.0, panel.nominal).y;
   add(canvas.area, "path", {{"class", "rule"}, {"d", fmt::format("M0 {}h{}", px(asked), px(canvas.width))}});
   for (const CoefficientCurve& curve : panel.curves) {
     draw_curve(canvas, panel, curve, legend.style(curve.label));
