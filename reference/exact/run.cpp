@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -43,9 +44,26 @@ constexpr double kRest = 1e-17;
 /// The seed of a twin's random direction: any number will do, but always the same.
 constexpr std::uint64_t kDirection = 20;
 
-Vector random_direction(Random& random, int dimension) {
+/// Whether no ball ever leaves its place along an axis of the scene's frame, whatever is rounded: they are
+/// all level and still along it, and nothing pushes them. (Friction of a spinning ball could.)
+bool idle(const Scenario& scene, int axis) {
+  if (axis >= scene.dimension) return true;
+  if (scene.ball_contact.friction > 0.0 || scene.wall_contact.friction > 0.0) return false;
+  if (scene.effects.gravity && (*scene.effects.gravity)[axis] != 0.0) return false;
+  const bool level = std::all_of(scene.balls.begin(), scene.balls.end(), [&](const Ball& ball) {
+    return ball.velocity[axis] == 0.0 && ball.position[axis] == scene.balls.front().position[axis];
+  });
+  return level && std::all_of(scene.walls.begin(), scene.walls.end(), [&](const Wall& wall) {
+           return wall.normal[axis] == 0.0 || std::abs(wall.normal[axis]) == 1.0;
+         });
+}
+
+/// With every axis that is not idle.
+Vector random_direction(Random& random, const std::array<bool, 3>& idle) {
   Vec3 direction = Vec3::Zero();
-  for (int axis = 0; axis < dimension; ++axis) direction[axis] = random.uniform(-1.0, 1.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!idle[static_cast<std::size_t>(axis)]) direction[axis] = random.uniform(-1.0, 1.0);
+  }
   return Vector(direction);
 }
 
@@ -72,9 +90,10 @@ Run::Run(const Scenario& scene, const Digits& digits, double end_s, Budget& budg
 void Run::perturb(const Real& change_m) {
   const Digits digits(digits_);
   Random random(kDirection);
+  const std::array idle_axes = {idle(scene_, 0), idle(scene_, 1), idle(scene_, 2)};
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Vector place = random_direction(random, scene_.dimension) * change_m;
-    const Vector velocity = random_direction(random, scene_.dimension) * Real(change_m / end_s_);
+    const Vector place = random_direction(random, idle_axes) * change_m;
+    const Vector velocity = random_direction(random, idle_axes) * Real(change_m / end_s_);
     if (!setting_.matter[i].movable()) continue;
     bodies_[i].position_m += place;
     bodies_[i].velocity_mps += velocity;
@@ -89,16 +108,28 @@ double Run::rounding_m() const {
   return 4.0 * kEpsilon * (setting_.scale_m + shadow_.top_speed_mps() * now_s_.convert_to<double>());
 }
 
-void Run::start() {
+/// Finds the soonest impacts of all balls, from where they are now.
+void Run::look_ahead() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) shadow_.set(i, bodies_[i]);
-  shadow_.advance(0.0);
+  shadow_.advance(now_s_.convert_to<double>());
   for (std::size_t i = 0; i < bodies_.size(); ++i) predict(i);
   started_ = true;
 }
 
+void Run::turn_round() {
+  const Digits digits(digits_);
+  now_s_ = moment_s_;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i] = setting_.moved(i, bodies_[i], now_s_);
+    bodies_[i].velocity_mps *= -1;
+    bodies_[i].spin_radps *= -1;
+  }
+  look_ahead();
+}
+
 bool Run::follow(const Moment& moment) {
   const Digits digits(digits_);
-  if (!started_) start();
+  if (!started_) look_ahead();
   moment_s_ = Real(moment.step_s) * moment.steps;
   const Real until_s = moment_s_ + instant_s_;
   while (!stop_) {

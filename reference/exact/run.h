@@ -43,11 +43,17 @@ class Run {
   Run(const Scenario& scene, const Digits& digits, double end_s, Budget& budget);
 
   /// A twin of such a run: positions are changed at the start by `change_m` times numbers in [-1, 1], and
-  /// velocities by as much over the duration. Immovable balls stay as they are.
+  /// velocities by as much over the duration. Immovable balls stay as they are, and so does an axis along
+  /// which all balls are level and still and no rounding can change that (balls on a line in the plane): no
+  /// engine leaves it, however unstable the motion across it is.
   void perturb(const Real& change_m);
 
   /// The largest change that perturb() made to a position or, over the duration, a velocity, m.
   const Real& perturbation_m() const { return perturbation_m_; }
+
+  /// From the last moment on all balls fly and spin the other way: without loss they come back.
+  /// @pre follow() got there
+  void turn_round();
 
   /// Goes on to a moment and past the impacts at it. Returns whether it got there.
   bool follow(const Moment& moment);
@@ -73,7 +79,7 @@ class Run {
     bool wall = false;
   };
 
-  void start();
+  void look_ahead();
   std::optional<std::size_t> soonest() const;
   void predict(std::size_t ball);
   std::optional<Real> meeting_s(std::size_t ball, const Prospect& prospect) const;

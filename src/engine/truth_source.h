@@ -29,8 +29,8 @@ struct TrueImpact {
   bool wall = false;
 };
 
-/// Impacts at one moment, as far as any number of digits could tell. What follows depends on their order
-/// where they share a ball.
+/// Impacts at one moment, as far as the scene's numbers tell, which are decimals rounded to doubles. What
+/// follows depends on their order at most where they share a ball.
 struct Tie {
   double time_s = 0.0;
   std::vector<std::uint32_t> balls;  ///< of all of them, sorted
@@ -48,7 +48,9 @@ struct Solution {
   std::vector<Tie> ties;            ///< the first kMostTiesTold
   /// For each moment asked for: how much larger than at the start a small change of the initial positions and
   /// velocities has become, |δx(t)|_max / |δ|, with δ of a random direction and |δ| the largest change of any
-  /// position (m) or, over the duration, velocity (m/s × duration). Empty where it was not found out.
+  /// position (m) or, over the duration, velocity (m/s × duration). An axis along which all balls are level and
+  /// still, so that no rounding moves them along it, is left out of δ. Shorter where the change is not followed
+  /// any further, and empty where it was not found out.
   std::vector<double> amplification;
 
   static constexpr std::size_t kMostImpactsTold = 100'000;
