@@ -8,6 +8,7 @@
 #include "app/machine.h"
 #include "app/prepare.h"
 #include "app/progress.h"
+#include "comparison/check_symmetries.h"
 #include "comparison/compare.h"
 #include "core/files.h"
 #include "report/csv.h"
@@ -42,7 +43,10 @@ SceneComparison compare_scene(const ScenarioPtr& scene, const std::vector<Engine
   std::vector<Run> runs = run_engines(*scene, engines, limits, options.parallel, [&](std::size_t done) {
     progress.advance(fmt::format("{} {}", scene->id, engines[done].source.name));
   });
-  return compare(scene, std::move(truth), std::move(runs), engines_under_test(engines));
+  std::vector<RunSymmetries> symmetries =
+      check_symmetries(*scene, runs, engines, limits, options.parallel);
+  return compare(scene, std::move(truth), std::move(runs), engines_under_test(engines),
+                 std::move(symmetries));
 }
 
 /// Whether the report is of everything: then it says too what impacts deliver, apart from any scene.

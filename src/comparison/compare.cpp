@@ -72,7 +72,9 @@ PairComparison pair_of(const Yardstick& yardstick, double tolerance_m, std::size
 }  // namespace
 
 SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
-                        const std::vector<std::string>& under_test) {
+                        const std::vector<std::string>& under_test,
+                        std::vector<RunSymmetries> symmetries) {
+  symmetries.resize(runs.size());
   SceneComparison result;
   result.scene = std::move(scene);
   result.truth = std::move(truth);
@@ -85,6 +87,8 @@ SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
     each.run = std::move(run);
     each.under_test = std::find(under_test.begin(), under_test.end(), each.run.label()) != under_test.end();
     measure(yardstick, result.position_tolerance_m, each);
+    each.symmetries = std::move(symmetries[result.runs.size() - 1]);
+    each.metrics[Metric::symmetry] = each.symmetries.worst_radii();
     hold_gates(result.scene->gate, each);
   }
   for (std::size_t a = 0; a < result.runs.size(); ++a) {

@@ -11,7 +11,9 @@ namespace carom {
 /// metrics/.
 ///
 /// @param under_test  names of the engines that [gate] is meant for
+/// @param symmetries  what check_symmetries() found, one for each run; none given: nothing was checked
 SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
-                        const std::vector<std::string>& under_test);
+                        const std::vector<std::string>& under_test,
+                        std::vector<RunSymmetries> symmetries = {});
 
 }  // namespace carom

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "comparison/symmetry.h"
 #include "scenario/metric.h"
 #include "scenario/scenario.h"
 #include "trajectory/trajectory.h"
@@ -71,6 +72,7 @@ struct RunComparison {
   std::optional<Judgement> judgement;          ///< nothing without a truth
   std::vector<GateResult> gates;
   Verdict verdict = Verdict::shown;
+  RunSymmetries symmetries;  ///< what the scene's [symmetry] came to
   RunSeries series;
 
   /// Whether this run makes the check fail.

@@ -70,6 +70,19 @@ Json metrics(const RunComparison& result) {
   return json;
 }
 
+Json symmetries(const RunComparison& result) {
+  Json json = Json::array();
+  for (const SymmetryResult& check : result.symmetries.checks) {
+    json.push_back({{"check", name_of(check.symmetry)},
+                    {"verdict", name_of(check.verdict)},
+                    {"reason", check.reason},
+                    {"position_radii", number_or_null(check.position_radii)},
+                    {"energy", number_or_null(check.energy)},
+                    {"floor_radii", number_or_null(result.symmetries.floor_radii)}});
+  }
+  return json;
+}
+
 Json gates(const RunComparison& result) {
   Json json = Json::array();
   for (const GateResult& gate : result.gates) {
@@ -121,6 +134,7 @@ Json run_json(const Scenario& scene, const RunComparison& result, bool all_balls
       {"metrics", metrics(result)},
       {"accuracy", judgement(result.judgement)},
       {"first_divergence", divergence(result.first_divergence)},
+      {"symmetries", symmetries(result)},
       {"gates", gates(result)},
       {"verdict", name_of(result.verdict)},
       {"final", ok ? final_states(scene, run.trajectory, all_balls) : Json::array()}};

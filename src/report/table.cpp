@@ -3,6 +3,8 @@
 #include <fmt/color.h>
 #include <fmt/format.h>
 
+#include <array>
+
 #include "report/words.h"
 
 namespace carom {
@@ -69,6 +71,66 @@ std::string choice_row(const Run& run) {
                      pairs.empty() ? "" : fmt::format(", pairs by {}", pairs));
 }
 
+/// A column of the table of symmetries, for a terminal of 80 columns.
+struct SymmetryColumn {
+  Symmetry symmetry;
+  std::string_view heading;
+  int width;
+};
+constexpr std::array kSymmetryColumns = {
+    SymmetryColumn{Symmetry::mirror, "mirror", 7},      SymmetryColumn{Symmetry::rotate_90, "90°", 6},
+    SymmetryColumn{Symmetry::rotate_1_rad, "1 rad", 6}, SymmetryColumn{Symmetry::boost, "boost", 6},
+    SymmetryColumn{Symmetry::relabel, "relabel", 8},    SymmetryColumn{Symmetry::rescale_2, "×8", 6},
+    SymmetryColumn{Symmetry::rescale_1_7, "×1.7", 6},   SymmetryColumn{Symmetry::reverse, "reverse", 8}};
+
+/// One digit in five letters: 0.3, 19, 2e-5.
+std::string one_digit(double value) {
+  if (value >= 1.0 && value < 9999.5) return fmt::format("{:.0f}", value);
+  std::string text = fmt::format("{:.1g}", value);
+  const std::size_t padding = text.find_last_of("+-");
+  if (padding != std::string::npos && text[padding + 1] == '0') text.erase(padding + 1, 1);
+  return text;
+}
+
+/// "bit", "round", or by how many radii it is broken.
+std::string symmetry_word(const RunSymmetries& symmetries, Symmetry symmetry) {
+  for (const SymmetryResult& check : symmetries.checks) {
+    if (check.symmetry != symmetry) continue;
+    switch (check.verdict) {
+      case SymmetryVerdict::to_the_bit:
+        return "bit";
+      case SymmetryVerdict::to_rounding:
+        return "round";
+      case SymmetryVerdict::broken:
+        return one_digit(check.position_radii.value_or(0.0)) + "!";
+      case SymmetryVerdict::does_not_apply:
+        return "–";
+      case SymmetryVerdict::twin_did_not_run:
+        return "lost!";
+    }
+  }
+  return "";
+}
+
+std::string symmetry_table(const SceneComparison& scene) {
+  if (scene.scene->symmetries.empty()) return {};
+  std::string text = fmt::format("  {:<18} {:>6}", "symmetry", "floor");
+  for (const SymmetryColumn& column : kSymmetryColumns) {
+    text += fmt::format("{:>{}}", column.heading, column.width);
+  }
+  text += "\n";
+  for (const RunComparison& run : scene.runs) {
+    if (run.run.status != RunStatus::ok) continue;
+    const std::optional<double>& floor = run.symmetries.floor_radii;
+    text += fmt::format("  {:<18} {:>6}", run.run.label(), floor ? one_digit(*floor) : "n/a");
+    for (const SymmetryColumn& column : kSymmetryColumns) {
+      text += fmt::format("{:>{}}", symmetry_word(run.symmetries, column.symmetry), column.width);
+    }
+    text += "\n";
+  }
+  return text + "  bit: to the bit, round: to rounding, n!: broken by n radii, –: does not apply\n";
+}
+
 }  // namespace
 
 std::string results_table(const Results& results, bool color) {
@@ -84,6 +146,7 @@ std::string results_table(const Results& results, bool color) {
     for (const RunComparison& run : scene.runs) text += run_row(run, color);
     for (const RunComparison& run : scene.runs) text += departure_row(*scene.scene, run);
     for (const RunComparison& run : scene.runs) text += choice_row(run.run);
+    text += symmetry_table(scene);
     text += "\n";
   }
   for (const MissingEngine& engine : results.missing) {

@@ -18,11 +18,12 @@ enum class Metric {
   position_rms,      ///< m, root mean square over balls and frames against the truth
   penetration,       ///< max overlap / smaller radius
   escaped,           ///< balls whose centre was behind a wall
+  symmetry,          ///< max over [symmetry] checks of the distance from the twin / smallest radius
 };
 
-inline constexpr std::array<std::string_view, 9> kMetricNames = {
+inline constexpr std::array<std::string_view, 10> kMetricNames = {
     "energy",   "energy_gain",  "energy_loss", "momentum", "angular_momentum",
-    "position", "position_rms", "penetration", "escaped"};
+    "position", "position_rms", "penetration", "escaped", "symmetry"};
 
 constexpr std::string_view name_of(Metric metric) {
   return kMetricNames[static_cast<std::size_t>(metric)];

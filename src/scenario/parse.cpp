@@ -262,6 +262,16 @@ TruthKind read_truth(Reader reader) {
   return kind;
 }
 
+std::vector<Symmetry> read_symmetries(Reader reader) {
+  std::vector<Symmetry> symmetries;
+  const std::vector<std::string_view> names(kSymmetryNames.begin(), kSymmetryNames.end());
+  for (const std::size_t index : reader.required("checks", reader.words("checks", names))) {
+    symmetries.push_back(static_cast<Symmetry>(index));
+  }
+  reader.finish();
+  return symmetries;
+}
+
 /// Keys are read in this order because later ones lean on earlier ones: vectors on the dimension, friction on
 /// spin, generated balls on the box.
 void read_scene(Reader& root, const SceneOptions& options, Scenario& scene) {
@@ -282,6 +292,7 @@ void read_scene(Reader& root, const SceneOptions& options, Scenario& scene) {
   read_balls(root, scene, options);
   for (Reader& reader : root.tables("event")) scene.events.push_back(read_event(reader, scene));
   if (auto truth = root.table("truth")) scene.truth = read_truth(*truth);
+  if (auto symmetry = root.table("symmetry")) scene.symmetries = read_symmetries(*symmetry);
   if (auto gate = root.table("gate")) scene.gate = read_gate(*gate, options.engines);
   root.finish();
 }

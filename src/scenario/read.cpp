@@ -133,6 +133,32 @@ std::optional<std::size_t> Reader::word(std::string_view key, const std::vector<
   return static_cast<std::size_t>(match - allowed.begin());
 }
 
+std::optional<std::vector<std::size_t>> Reader::words(std::string_view key,
+                                                      const std::vector<std::string_view>& allowed) {
+  const std::string choice = fmt::format("\"{}\"", fmt::join(allowed, "\", \""));
+  const toml::node* node = find(key, fmt::format("\"all\", or an array of some of {}", choice));
+  if (node == nullptr) return std::nullopt;
+  std::vector<std::size_t> indices;
+  if (node->value<std::string>() == "all") {
+    for (std::size_t i = 0; i < allowed.size(); ++i) indices.push_back(i);
+    return indices;
+  }
+  if (!node->is_array() || node->as_array()->empty()) {
+    fail_at(*node, path_of(key), expected(*node, allowed_last_));
+  }
+  for (const toml::node& element : *node->as_array()) {
+    const auto word = element.is_string() ? element.value<std::string>() : std::nullopt;
+    const auto match = word ? std::find(allowed.begin(), allowed.end(), *word) : allowed.end();
+    if (match == allowed.end()) fail_at(element, path_of(key), expected(element, choice));
+    const auto index = static_cast<std::size_t>(match - allowed.begin());
+    if (std::find(indices.begin(), indices.end(), index) != indices.end()) {
+      fail_at(element, path_of(key), expected(element, "each of them once"));
+    }
+    indices.push_back(index);
+  }
+  return indices;
+}
+
 std::optional<Vec3> Reader::vector(std::string_view key, int dimension) {
   const toml::node* node = find(key, finite_numbers(dimension));
   if (node == nullptr) return std::nullopt;

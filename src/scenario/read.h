@@ -53,6 +53,9 @@ class Reader {
   std::optional<std::string> text(std::string_view key);
   /// One of a few words, as its index.
   std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& allowed);
+  /// Several of a few words, each once, as their indices; "all" stands for all of them.
+  std::optional<std::vector<std::size_t>> words(std::string_view key,
+                                                const std::vector<std::string_view>& allowed);
   /// A vector of the scene's dimension; z = 0 in dimension 2.
   std::optional<Vec3> vector(std::string_view key, int dimension);
   /// A number about z in dimension 2, a vector in dimension 3.

@@ -11,6 +11,7 @@
 
 #include "core/vec.h"
 #include "scenario/metric.h"
+#include "scenario/symmetry.h"
 
 namespace carom {
 
@@ -147,6 +148,7 @@ struct Scenario {
 
   TruthKind truth = TruthKind::automatic;
   Gate gate;
+  std::vector<Symmetry> symmetries;  ///< held against twins of the scene, in this order
 
   std::vector<std::string> notes;  ///< what the reader of the file should know (a radius that was scaled)
 };

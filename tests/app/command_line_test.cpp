@@ -423,6 +423,19 @@ TEST_F(CommandLine, Table_FitsEightyColumns) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
 }
 
+/// Letters, not bytes: those that go on with a letter in UTF-8 begin with the bits 10.
+std::size_t columns(const std::string& line) {
+  return static_cast<std::size_t>(
+      std::count_if(line.begin(), line.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+}
+
+TEST_F(CommandLine, TableOfSymmetries_FitsEightyColumnsToo) {
+  const Ended ended = carom({"run", "symmetry/free-disks"});
+  EXPECT_EQ(ended.exit_code, kHolds);
+  std::istringstream lines(ended.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(columns(line), 80U) << line;
+}
+
 TEST_F(CommandLine, Quiet_PrintsNothing_WhereEveryGateHolds) {
   const Ended ended = carom({"check", "gas.toml", "--engine", "carom", "--quiet", "--json", "results.json"});
   EXPECT_EQ(ended.exit_code, kHolds);
@@ -507,7 +520,16 @@ void expect_run(const json& run) {
                                   {"position", kMaybe},
                                   {"position_rms", kMaybe},
                                   {"penetration", kMaybe},
-                                  {"escaped", {T::number_unsigned, T::null}}});
+                                  {"escaped", {T::number_unsigned, T::null}},
+                                  {"symmetry", kMaybe}});
+  for (const json& check : run.at("symmetries")) {
+    expect_keys(check, {{"check", kText},
+                        {"verdict", kText},
+                        {"reason", kText},
+                        {"position_radii", kMaybe},
+                        {"energy", kMaybe},
+                        {"floor_radii", kMaybe}});
+  }
   for (const json& gate : run.at("gates")) {
     const std::set<T> limit = {T::number_float, T::number_unsigned};
     expect_keys(gate, {{"metric", kText},
@@ -713,6 +735,26 @@ TEST_F(CommandLine, ImpulseAThousandthTooLarge_IsCaughtAndNamed) {
   };
   EXPECT_THAT(ended.out, says("energy", "1e-14"));
   EXPECT_THAT(ended.out, says("position", "1e-13"));
+}
+
+/// The checks that a run does not pass.
+std::set<std::string> broken_symmetries(const json& run) {
+  std::set<std::string> names;
+  for (const json& check : run.at("symmetries")) {
+    if (check.at("verdict") == "broken") names.insert(check.at("check"));
+  }
+  return names;
+}
+
+TEST_F(CommandLine, BrokenSymmetry_IsCaughtWithoutATruth_AndNamed) {
+  const Ended ended =
+      carom({"check", "symmetry/free-disks", "--engines-from", CAROM_TEST_ENGINE_DIR, "--engine",
+             "broken-label", "--engine", "broken-direction", "--json", "results.json"});
+  EXPECT_EQ(ended.exit_code, kViolated);
+  EXPECT_THAT(ended.out, HasSubstr("symmetry/free-disks: broken-label: symmetry = "));
+  EXPECT_THAT(ended.out, HasSubstr("symmetry/free-disks: broken-direction: symmetry = "));
+  EXPECT_EQ(broken_symmetries(runs().at(0)), (std::set<std::string>{"relabel"}));
+  EXPECT_EQ(broken_symmetries(runs().at(1)), (std::set<std::string>{"rotate-1-rad", "rotate-90"}));
 }
 
 struct Broken {

@@ -433,6 +433,16 @@ TEST(Parse, LineEndingsAndByteOrderMark_DoNotMatter) {
 
 /// A scene that is wrong in one place: `what` of kEverything is replaced by `by`, in which '@' marks the
 /// place that the error must name. Where `what` is empty, `by` is what follows kMinimal.
+TEST(ParseSymmetries, AreThoseNamedInTheirOrder_OrAll_OrNone) {
+  const auto symmetries = [](const std::string& more) {
+    return parse_scene(kMinimal + more, "scene.toml")->symmetries;
+  };
+  EXPECT_TRUE(symmetries("").empty());
+  EXPECT_THAT(symmetries("[symmetry]\nchecks = [\"reverse\", \"mirror\"]"),
+              ElementsAre(Symmetry::reverse, Symmetry::mirror));
+  EXPECT_EQ(symmetries("[symmetry]\nchecks = \"all\"").size(), kSymmetryNames.size());
+}
+
 struct Wrong {
   std::string name;
   std::string what;
@@ -500,6 +510,26 @@ const std::vector<Wrong> kUnknownKey = {
     {"Engine", "[gate.box2d]", "@[gate.havok]", "gate.havok", {"unknown engine", "carom, box2d"}},
 };
 INSTANTIATE_TEST_SUITE_P(UnknownKey, ParseWrong, ::testing::ValuesIn(kUnknownKey), name_of_case);
+
+const std::vector<Wrong> kSymmetry = {
+    {"Unknown",
+     "",
+     "[symmetry]\nchecks = [\"mirror\", @\"shear\"]",
+     "symmetry.checks",
+     {"found 'shear'", "allowed: \"mirror\", \"rotate-90\"", "\"reverse\""}},
+    {"Word",
+     "",
+     "[symmetry]\nchecks = @\"every\"",
+     "symmetry.checks",
+     {"found 'every'", "allowed: \"all\", or"}},
+    {"Number", "", "[symmetry]\nchecks = [@1]", "symmetry.checks", {"found 1"}},
+    {"None", "", "[symmetry]\nchecks = @[]", "symmetry.checks", {"found []", "allowed: \"all\", or"}},
+    {"Twice", "", "[symmetry]\nchecks = [\"boost\", @\"boost\"]", "symmetry.checks", {"each of them once"}},
+    {"Missing", "", "@[symmetry]\n", "symmetry.checks", {"is missing", "\"all\""}},
+    {"Key", "", "[symmetry]\n@scale = 2\nchecks = \"all\"", "symmetry.scale", {"unknown key", "checks"}},
+    {"Table", "", "@symmetry = \"all\"", "ball[0].symmetry", {"unknown key"}},
+};
+INSTANTIATE_TEST_SUITE_P(SymmetryTable, ParseWrong, ::testing::ValuesIn(kSymmetry), name_of_case);
 
 const std::vector<Wrong> kWrongType = {
 

@@ -10,6 +10,7 @@
 #include "report/page/scene_section.h"
 #include "report/page/style.h"
 #include "report/page/survival.h"
+#include "report/page/symmetry.h"
 
 namespace carom {
 
@@ -38,6 +39,7 @@ void add_navigation(Node body, const Results& results, bool with_costs) {
   if (has_judgements(results)) add(bar, "a", {{"href", "#accuracy"}}, "Who is right");
   if (has_hard_cases(results)) add(bar, "a", {{"href", "#survival"}}, "Hard cases");
   if (!results.coefficients.empty()) add(bar, "a", {{"href", "#coefficients"}}, "Impacts");
+  if (has_symmetries(results)) add(bar, "a", {{"href", "#symmetry"}}, "Symmetries");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
   if (with_costs) add(bar, "a", {{"href", "#costs"}}, "What effects cost");
@@ -55,6 +57,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_accuracy(main, results, legend);
   add_survival(main, results, legend);
   add_coefficients(main, results.coefficients, legend);
+  add_symmetries(main, results, legend);
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);

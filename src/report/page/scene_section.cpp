@@ -101,6 +101,16 @@ std::string accuracy_of(const RunComparison& run) {
   return run.judgement ? std::string(name_of(run.judgement->accuracy)) : "n/a";
 }
 
+/// The columns of the table: symmetries are measured only where a scene asks for them.
+std::vector<Metric> metrics_of(const Scenario& scene) {
+  std::vector<Metric> metrics;
+  for (std::size_t i = 0; i < kMetricNames.size(); ++i) {
+    const auto metric = static_cast<Metric>(i);
+    if (metric != Metric::symmetry || !scene.symmetries.empty()) metrics.push_back(metric);
+  }
+  return metrics;
+}
+
 std::string impacts_of(const Run& run) {
   if (run.trajectory.frames() == 0) return "n/a";
   return std::to_string(run.trajectory.tally(run.trajectory.frames() - 1).impacts);
@@ -114,10 +124,12 @@ void add_metric_cell(Node row, const RunComparison& run, Metric metric) {
 
 void add_metrics(Node parent, const SceneComparison& scene) {
   std::vector<Heading> headings = {{"engine", ""}};
-  for (std::size_t i = 0; i < kMetricNames.size(); ++i) {
-    const auto metric = static_cast<Metric>(i);
+  for (const Metric metric : metrics_of(*scene.scene)) {
     const bool length = metric == Metric::position || metric == Metric::position_rms;
-    const char* unit = length ? ", m" : metric == Metric::escaped ? ", balls" : "";
+    const char* unit = length                       ? ", m"
+                       : metric == Metric::escaped  ? ", balls"
+                       : metric == Metric::symmetry ? ", radii"
+                                                    : "";
     headings.push_back({title_of(metric) + unit, "number"});
   }
   headings.insert(headings.end(),
@@ -134,7 +146,7 @@ void add_metrics(Node parent, const SceneComparison& scene) {
           std::string(name_of(run.run.status)) + ": " + run.run.reason);
       continue;
     }
-    for (std::size_t i = 0; i < kMetricNames.size(); ++i) add_metric_cell(row, run, static_cast<Metric>(i));
+    for (const Metric metric : metrics_of(*scene.scene)) add_metric_cell(row, run, metric);
     add(row, "td", {{"class", "number"}}, impacts_of(run.run));
     add(row, "td", {}, accuracy_of(run));
     add(row, "td", {{"class", "divergence"}},

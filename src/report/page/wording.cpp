@@ -103,7 +103,8 @@ std::string title_of(Metric metric) {
 
 std::string value_of(Metric metric, const std::optional<double>& value) {
   const bool length = metric == Metric::position || metric == Metric::position_rms;
-  return number(value) + (value && length ? " m" : "");
+  if (!value) return number(value);
+  return number(value) + (length ? " m" : metric == Metric::symmetry ? " radii" : "");
 }
 
 std::string power_of_ten(int exponent) {

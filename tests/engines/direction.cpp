@@ -1,0 +1,3 @@
+#include "tests/engines/lopsided.h"
+
+CAROM_ENGINE_MODULE(carom::test::TestEngine<carom::test::LopsidedGas<carom::test::WiderThanHigh>>)
