@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "engine/modules.h"
 #include "reference/closed_form/closed_form.h"
+#include "reference/converged/converged.h"
 #include "reference/engine_table.h"
 #include "reference/exact/exact.h"
 
@@ -95,7 +96,7 @@ EngineSource EngineCatalog::find(const std::string& name) const {
 }
 
 std::vector<std::shared_ptr<const TruthSource>> truth_sources() {
-  return {make_closed_form_truth(), make_exact_truth()};
+  return {make_closed_form_truth(), make_exact_truth(), make_converged_truth()};
 }
 
 }  // namespace carom
