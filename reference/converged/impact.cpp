@@ -12,7 +12,7 @@ Vector tangential_impulse(const Contact& contact, const Vector& n, const Real& n
   const Vector slip = (b.v - b.spin.cross(n) * b.radius_m) - (a.v + a.spin.cross(n) * a.radius_m);
   const Vector along = slip - n * slip.dot(n);
   const Real yield = a.per_mass + a.per_turning + b.per_mass + b.per_turning;
-  const Vector sticking = along * (-(1 + Real(contact.tangential_restitution)) / yield);
+  Vector sticking = along * (-(1 + Real(contact.tangential_restitution)) / yield);
   const Real most_Ns = Real(contact.friction) * normal_Ns;
   if (sticking.norm() <= most_Ns) return sticking;
   return along * (-most_Ns / along.norm());
@@ -39,7 +39,7 @@ Side Side::of(const Ball& ball, const Vector& v, const Vector& spin) {
 
 Vector strike(const Contact& contact, const Vector& n, Side& a, Side& b) {
   const Real normal_Ns = -(1 + Real(contact.restitution)) * (b.v - a.v).dot(n) / (a.per_mass + b.per_mass);
-  const Vector impulse = n * normal_Ns + tangential_impulse(contact, n, normal_Ns, a, b);
+  Vector impulse = n * normal_Ns + tangential_impulse(contact, n, normal_Ns, a, b);
   a.v -= impulse * a.per_mass;
   b.v += impulse * b.per_mass;
   if (contact.friction != 0.0) {
