@@ -151,7 +151,7 @@ TEST(ConvergedTruth, AgreesWithClosedForms_SceneFiles) {
 
 TEST(ConvergedTruth, AgreesWithClosedForms_RandomFlights) {
   Random random(401);
-  for (int round = 0; round < 24; ++round) {
+  for (int round = 0; round < 16; ++round) {
     SCOPED_TRACE(round);
     const int dimension = round % 2 == 0 ? 2 : 3;
     Scenario s = scene(dimension, random.uniform(0.1, 3.0));
@@ -278,14 +278,14 @@ TEST(ConvergedTruth, AgreesWithTheExactTruth_GravityFrictionAndSeveralBalls) {
 TEST(ConvergedTruth, ClaimedError_IsNotBelowTrueError_CoarseRuns) {
   const ConvergedSettings coarse = {
       .fine = {.order = 10, .bits = 40}, .coarse = {.order = 8, .bits = 33}, .tolerance = 1e-2};
-  const ConvergedSettings much_finer = {.fine = {.order = 20, .bits = 80},
-                                        .coarse = {.order = 18, .bits = 70}};
+  const ConvergedSettings much_finer = {.fine = {.order = 16, .bits = 64},
+                                        .coarse = {.order = 14, .bits = 57}};
   Random random(404);
   int inexact = 0;
   for (int round = 0; round < 200; ++round) {
     SCOPED_TRACE(round);
     Scenario s = random_scene(random, 2);
-    s.duration_s = 0.4;
+    s.duration_s = 0.3;
     const Told rough = converged(s, coarse, 4);
     const Told truth = converged(s, much_finer, 4);
     const double wrong_m = apart_m(rough, truth);
@@ -297,7 +297,7 @@ TEST(ConvergedTruth, ClaimedError_IsNotBelowTrueError_CoarseRuns) {
 
 TEST(ConvergedTruth, Uncertainty_IsThatOfADouble_FewImpacts) {
   Random random(405);
-  for (int round = 0; round < 20; ++round) {
+  for (int round = 0; round < 8; ++round) {
     const Told told = converged(random_scene(random, 2));
     // Centres stay within 1 m: one rounding, and of the integration nothing that shows.
     EXPECT_LE(told.solution.uncertainty_m, 1.01 * kEpsilon);
@@ -427,7 +427,7 @@ TEST(ConvergedTruth, GrazedBall_IsHitOrNot_ByTheLastDigitsOfADouble) {
 }
 
 TEST(ConvergedTruth, Top_IsPassed_NearlyStraightThrow) {
-  for (const double across : {0.0, 1e-300, 1e-20, 1e-3}) {
+  for (const double across : {0.0, 1e-20, 1e-3}) {
     SCOPED_TRACE(across);
     Scenario s = scene(2, 2.0);
     s.effects.gravity = Vec3(0, -kG, 0);
