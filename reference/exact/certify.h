@@ -14,7 +14,7 @@ struct Demands {
   /// orders below the rounding of a double: of what is handed out less than one number in ten thousand is not
   /// the double next to the truth.
   double tolerance = 1e-20;
-  std::int64_t budget = 400'000'000;  ///< in steps of about 10 ns, for all runs together
+  std::int64_t budget = 500'000'000;  ///< in steps of about 10 ns, for all runs together
 };
 
 /// Follows a scene in arithmetic of P and of 2 P digits at once and hands out its states as long as the two

@@ -3,6 +3,7 @@
 #include <array>
 #include <boost/multiprecision/mpfr.hpp>
 #include <cstddef>
+#include <utility>
 
 #include "core/vec.h"
 

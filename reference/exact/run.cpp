@@ -1,13 +1,11 @@
 #include "reference/exact/run.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "core/random.h"
 
@@ -15,7 +13,6 @@ namespace carom::exact {
 
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Half of the digits below one.
@@ -99,13 +96,6 @@ void Run::perturb(const Real& change_m) {
     bodies_[i].velocity_mps += velocity;
     perturbation_m_ = std::max({perturbation_m_, length(place), Real(length(velocity) * end_s_)});
   }
-}
-
-/// What the scene's numbers leave open of a distance by now, m. They are decimals that were rounded to
-/// doubles: the places and the radii of two balls, ε/2 of the scale each, and their velocities, ε/2 of the
-/// speed each over the time since; twice that.
-double Run::rounding_m() const {
-  return 4.0 * kEpsilon * (setting_.scale_m + shadow_.top_speed_mps() * now_s_.convert_to<double>());
 }
 
 /// Finds the soonest impacts of all balls, from where they are now.
@@ -212,79 +202,12 @@ void Run::perform(std::size_t ball) {
   const Touch touch{static_cast<std::uint32_t>(ball), due.partner, due.wall};
   now_s_ = std::max(now_s_, *due.time_s);
   shadow_.advance(now_s_.convert_to<double>());
-  budget_.left -= cost_of_impact(digits_) + 3 * kLook * static_cast<std::int64_t>(bodies_.size());
+  budget_.left -= cost_of_impact(digits_) + kLook * static_cast<std::int64_t>(bodies_.size());
   if (budget_.left < 0) {
     stop_at(now_s_, "", true);
     return;
   }
   if (goes_on(touch)) carry_out(touch);
-}
-
-Real Run::gap_m(const Touch& touch, const Body& ball) const {
-  const Real& radius = setting_.matter[touch.ball].radius_m;
-  if (touch.wall) {
-    const Plane& wall = setting_.walls[touch.partner];
-    return dot(ball.position_m, wall.normal) - wall.offset_m - radius;
-  }
-  const Vector place = setting_.position(touch.partner, bodies_[touch.partner], now_s_);
-  return length(place - ball.position_m) - radius - setting_.matter[touch.partner].radius_m;
-}
-
-/// Adds the contacts of a ball of the cluster, and the balls that they bring in.
-void Run::add_touches(std::uint32_t ball, const Real& gap, Cluster& cluster) {
-  shadow_.near(ball, gap.convert_to<double>(), prospects_);
-  for (const Prospect& prospect : prospects_) {
-    const Touch touch{ball, prospect.partner, prospect.wall};
-    const Touch turned{prospect.partner, ball, false};
-    const auto known = [&](const Touch& t) { return t == touch || (!touch.wall && t == turned); };
-    if (std::any_of(cluster.touches.begin(), cluster.touches.end(), known)) continue;
-    if (gap_m(touch, cluster.bodies.at(ball)) > gap) continue;
-    cluster.touches.push_back(touch);
-    if (touch.wall) continue;
-    cluster.bodies.try_emplace(touch.partner, setting_.moved(touch.partner, bodies_[touch.partner], now_s_));
-  }
-}
-
-Cluster Run::cluster_of(const Touch& touch) {
-  Cluster cluster;
-  cluster.touches.push_back(touch);
-  cluster.bodies.emplace(touch.ball, setting_.moved(touch.ball, bodies_[touch.ball], now_s_));
-  if (!touch.wall) {
-    cluster.bodies.emplace(touch.partner, setting_.moved(touch.partner, bodies_[touch.partner], now_s_));
-  }
-  const Real gap = rounding_m();
-  std::set<std::uint32_t> done;
-  while (done.size() < cluster.bodies.size()) {
-    const auto next = std::find_if(cluster.bodies.begin(), cluster.bodies.end(),
-                                   [&](const auto& entry) { return !done.contains(entry.first); });
-    done.insert(next->first);
-    add_touches(next->first, gap, cluster);
-  }
-  return cluster;
-}
-
-/// Whether an impact that is due has one outcome; if not, stops.
-bool Run::goes_on(const Touch& touch) {
-  const Cluster cluster = cluster_of(touch);
-  if (cluster.touches.size() == 1) return true;
-  // Outcomes that should be the same differ by the rounding of the scene's numbers, as the contacts' gaps do.
-  const Real tolerance = 16.0 * kEpsilon * setting_.speed_mps;
-  const Order order = judge(setting_, scene_, cluster, slack_, tolerance);
-  if (order == Order::single) return true;
-  std::vector<std::uint32_t> balls;
-  for (const auto& [ball, body] : cluster.bodies) balls.push_back(ball);
-  tell_tie(instant_s_, balls, true);
-  if (order == Order::irrelevant) return true;
-  const std::string who = balls.size() == 1 ? fmt::format("ball {} and walls", balls.front())
-                                            : fmt::format("balls {}", fmt::join(balls, ", "));
-  stop_at(now_s_, order == Order::matters
-                      ? fmt::format("impacts of {} come at one moment, and what follows depends on their "
-                                    "order",
-                                    who)
-                      : fmt::format("{} touch when one of them is hit, and how an impact is passed on along "
-                                    "touching bodies has no unique answer",
-                                    who));
-  return false;
 }
 
 void Run::carry_out(const Touch& touch) {
@@ -294,18 +217,7 @@ void Run::carry_out(const Touch& touch) {
   if (!touch.wall) partner = setting_.moved(touch.partner, partner, now_s_);
   Encounter encounter(setting_, scene_, touch, ball, partner);
   const Real approach = encounter.approach_mps();
-  if (!impacts_.empty()) {
-    const TrueImpact& last = impacts_.back();
-    const bool shared =
-        last.ball == touch.ball || (!last.wall && last.partner == touch.ball) ||
-        (!touch.wall && (last.ball == touch.partner || (!last.wall && last.partner == touch.partner)));
-    if (!shared && (now_s_ - last.time_s) * approach <= rounding_m()) {
-      std::vector<std::uint32_t> balls = {last.ball, touch.ball};
-      if (!last.wall) balls.push_back(last.partner);
-      if (!touch.wall) balls.push_back(touch.partner);
-      tell_tie(instant_s_, balls, false);
-    }
-  }
+  tell_tie_apart(touch, approach);
   if (approach > 0) account(touch, encounter, encounter.collide());
   impacts_.push_back({now_s_.convert_to<double>(), touch.ball, touch.partner, touch.wall});
   const Real pressing = encounter.pressing_mps2();
@@ -314,9 +226,10 @@ void Run::carry_out(const Touch& touch) {
                                 touch.ball, touch.wall ? "wall" : "ball", touch.partner));
     return;
   }
-  shadow_.set(touch.ball, ball);
-  if (!touch.wall) shadow_.set(touch.partner, partner);
-  shadow_.advance(now_s_.convert_to<double>());
+  for (const std::size_t hit : {touch.ball, touch.wall ? touch.ball : touch.partner}) {
+    shadow_.set(hit, bodies_[hit]);
+    shadow_.catch_up(hit);
+  }
   predict_anew(touch);
 }
 
@@ -334,23 +247,6 @@ void Run::account(const Touch& touch, const Encounter& encounter, const Vector& 
       bodies_[pushed].position_m - encounter.normal() * Real(sign * setting_.matter[pushed].radius_m);
   external_impulse_ += push;
   external_angular_impulse_ += cross(contact, push);
-}
-
-void Run::tell_tie(const Real& window_s, std::vector<std::uint32_t> balls, bool shares_ball) {
-  const double time_s = now_s_.convert_to<double>();
-  const bool more = !ties_.empty() && now_s_ - ties_.back().time_s <= window_s + kEpsilon * time_s;
-  if (more) {
-    Tie& tie = ties_.back();
-    tie.shares_ball = tie.shares_ball || shares_ball;
-    balls.insert(balls.end(), tie.balls.begin(), tie.balls.end());
-  }
-  std::sort(balls.begin(), balls.end());
-  balls.erase(std::unique(balls.begin(), balls.end()), balls.end());
-  if (more) {
-    ties_.back().balls = std::move(balls);
-  } else if (ties_.size() < Solution::kMostTiesTold) {
-    ties_.push_back({time_s, std::move(balls), shares_ball});
-  }
 }
 
 void Run::stop_at(const Real& time_s, std::string reason, bool budget) {

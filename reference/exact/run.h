@@ -89,9 +89,11 @@ class Run {
   Cluster cluster_of(const Touch& touch);
   void add_touches(std::uint32_t ball, const Real& gap_m, Cluster& cluster);
   Real gap_m(const Touch& touch, const Body& ball) const;
+  bool piles_up(const Cluster& cluster) const;
   bool goes_on(const Touch& touch);
   void account(const Touch& touch, const Encounter& encounter, const Vector& impulse);
-  void tell_tie(const Real& window_s, std::vector<std::uint32_t> balls, bool shares_ball);
+  void tell_tie_apart(const Touch& touch, const Real& approach);
+  void tell_tie(std::vector<std::uint32_t> balls, bool shares_ball);
   void stop_at(const Real& time_s, std::string reason, bool budget = false);
   double rounding_m() const;
 

@@ -23,6 +23,7 @@ double least_time_s(double way_m, double speed_mps, double fall_mps2) {
 
 Shadow::Shadow(const Scenario& scene, const Setting& setting, double end_s)
     : gravity_mps2_(scene.effects.gravity.value_or(Vec3::Zero())),
+      gravity_(setting.gravity),
       walls_(scene.walls),
       balls_(scene.balls.size()),
       now_m_(scene.balls.size()),
@@ -56,13 +57,17 @@ void Shadow::set(std::size_t ball, const Body& body) {
 
 void Shadow::advance(double now_s) {
   now_s_ = now_s;
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
-    const Ball& ball = balls_[i];
-    const double t = now_s - ball.since_s;
-    const Vec3 fall = ball.movable ? Vec3(gravity_mps2_ * t) : Vec3(Vec3::Zero());
-    now_m_[i] = ball.start_m + (ball.start_mps + 0.5 * fall) * t;
-    now_mps_[i] = ball.start_mps + fall;
-  }
+  for (std::size_t i = 0; i < balls_.size(); ++i) catch_up(i);
+}
+
+void Shadow::catch_up(std::size_t ball) {
+  const Ball& own = balls_[ball];
+  const double t = now_s_ - own.since_s;
+  now_m_[ball] = own.start_m + own.start_mps * t;
+  now_mps_[ball] = own.start_mps;
+  if (!gravity_ || !own.movable) return;
+  now_m_[ball] += gravity_mps2_ * (0.5 * t * t);
+  now_mps_[ball] += gravity_mps2_ * t;
 }
 
 double Shadow::error_m() const {
@@ -73,19 +78,20 @@ double Shadow::before(double wait_s) const {
   return now_s_ + (1.0 - 1e-9) * wait_s - 4.0 * kEpsilon * end_s_;
 }
 
-double Shadow::pair_earliest_s(std::size_t a, std::size_t b) const {
+double Shadow::pair_earliest_s(std::size_t a, std::size_t b, double error) const {
   const Vec3 d = now_m_[b] - now_m_[a];
   const Vec3 v = now_mps_[b] - now_mps_[a];
-  const double reach = balls_[a].radius_m + balls_[b].radius_m + error_m();
+  const double reach = balls_[a].radius_m + balls_[b].radius_m + error;
   const double f = (1.0 - 1e-10) * d.squaredNorm() - reach * reach;
   if (f <= 0.0) return before(0.0);
-  if (balls_[a].movable != balls_[b].movable && !gravity_mps2_.isZero(0.0)) {
+  if (gravity_ && balls_[a].movable != balls_[b].movable) {
     const double way = std::sqrt(f + reach * reach) - reach;
     return before(least_time_s(way, v.norm(), gravity_mps2_.norm()));
   }
   const double approach = -d.dot(v);
+  if (approach <= 0.0) return kNever;
   const double square = approach * approach - v.squaredNorm() * f;
-  if (approach <= 0.0 || square < 0.0) return kNever;
+  if (square < 0.0) return kNever;
   return before(f / (approach + std::sqrt(square)));
 }
 
@@ -102,11 +108,12 @@ double Shadow::wall_earliest_s(std::size_t ball, const Wall& wall) const {
 void Shadow::prospects(std::size_t ball, std::vector<Prospect>& found) const {
   found.clear();
   const bool movable = balls_[ball].movable;
+  const double error = error_m();
   const auto add = [&](double earliest_s, std::size_t partner, bool wall) {
     if (earliest_s <= end_s_) found.push_back({earliest_s, static_cast<std::uint32_t>(partner), wall});
   };
   for (std::size_t k = 0; meet_ && k < balls_.size(); ++k) {
-    if (k != ball && (movable || balls_[k].movable)) add(pair_earliest_s(ball, k), k, false);
+    if (k != ball && (movable || balls_[k].movable)) add(pair_earliest_s(ball, k, error), k, false);
   }
   for (std::size_t k = 0; movable && k < walls_.size(); ++k) add(wall_earliest_s(ball, walls_[k]), k, true);
 }
@@ -114,9 +121,10 @@ void Shadow::prospects(std::size_t ball, std::vector<Prospect>& found) const {
 void Shadow::near(std::size_t ball, double gap_m, std::vector<Prospect>& found) const {
   found.clear();
   const bool movable = balls_[ball].movable;
+  const double wider = balls_[ball].radius_m + error_m() + gap_m;
   for (std::size_t k = 0; meet_ && k < balls_.size(); ++k) {
     if (k == ball || (!movable && !balls_[k].movable)) continue;
-    const double reach = balls_[ball].radius_m + balls_[k].radius_m + error_m() + gap_m;
+    const double reach = wider + balls_[k].radius_m;
     if ((1.0 - 1e-10) * (now_m_[k] - now_m_[ball]).squaredNorm() <= reach * reach) {
       found.push_back({now_s_, static_cast<std::uint32_t>(k), false});
     }

@@ -42,6 +42,9 @@ class Shadow {
   /// Moves all balls to a moment.
   void advance(double now_s);
 
+  /// Moves one ball to the moment at which the others are.
+  void catch_up(std::size_t ball);
+
   /// Whom a ball may meet before the end, from now on, in no order.
   void prospects(std::size_t ball, std::vector<Prospect>& found) const;
 
@@ -62,12 +65,13 @@ class Shadow {
 
   double error_m() const;
   double before(double wait_s) const;
-  double pair_earliest_s(std::size_t a, std::size_t b) const;
+  double pair_earliest_s(std::size_t a, std::size_t b, double error) const;
   double wall_earliest_s(std::size_t ball, const Wall& wall) const;
   double wall_gap_m(std::size_t ball, const Wall& wall) const;
 
   Vec3 middle_m_ = Vec3::Zero();
   Vec3 gravity_mps2_ = Vec3::Zero();
+  bool gravity_;
   std::vector<Wall> walls_;  ///< seen from the middle
   std::vector<Ball> balls_;
   std::vector<Vec3> now_m_;  ///< places now

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/random.h"
@@ -203,6 +204,79 @@ TEST(ExactRun, PushOfWalls_AccountsForMomentum) {
       (rounded(after.angular_momentum_Nms - before.angular_momentum_Nms) - tally.external_angular_impulse)
           .norm(),
       rest);
+}
+
+/// When two balls, or a ball and a wall, meet in all digits; nothing before the end.
+std::optional<Real> meeting_s(const Setting& setting, const std::vector<Body>& bodies, std::size_t ball,
+                              const Prospect& prospect, const Real& end_s) {
+  const Slack slack{power_of_ten(-30), power_of_ten(-30)};
+  const Body& own = bodies[ball];
+  const Vector fall = setting.falls(ball) ? setting.gravity_mps2 : Vector(0, 0, 0);
+  if (prospect.wall) {
+    const Plane& wall = setting.walls[prospect.partner];
+    const Real gap = dot(own.position_m, wall.normal) - wall.offset_m - setting.matter[ball].radius_m;
+    return wall_reached(gap, dot(own.velocity_mps, wall.normal), dot(fall, wall.normal), slack);
+  }
+  const std::size_t k = prospect.partner;
+  const Body& other = bodies[k];
+  Relative motion{other.position_m - own.position_m,
+                  other.velocity_mps - own.velocity_mps,
+                  {0, 0, 0},
+                  setting.falls(ball) != setting.falls(k)};
+  motion.a = (setting.falls(k) ? setting.gravity_mps2 : Vector(0, 0, 0)) - fall;
+  return balls_meet(motion, setting.matter[ball].radius_m + setting.matter[k].radius_m, slack, end_s);
+}
+
+TEST(ExactShadow, IsNeverTooLate_AndLeavesNobodyOut) {
+  const Digits digits(kDigits);
+  Random random(7);
+  int meetings = 0;
+  for (int n = 0; n < 300; ++n) {
+    Scenario scene;
+    scene.dimension = 3;
+    scene.duration_s = 4.0;
+    if (n % 2 == 0) scene.effects.gravity = Vec3(0, -1.0, 0.2);
+    // Some far from the origin, some very small, some very fast; some immovable.
+    const Vec3 origin = n % 3 == 0 ? Vec3(1e6, -1e7, 1e5) : Vec3(0, 0, 0);
+    const double size = n % 5 == 0 ? 1e-6 : 1.0;
+    for (int k = 0; k < 6; ++k) {
+      const Vec3 place(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      carom::Ball ball = random_ball(random, origin + size * place, n % 7 == 0 ? 1e3 * size : size);
+      ball.radius *= size;
+      if (k == 0) ball.mass = kInfinity;
+      scene.balls.push_back(ball);
+    }
+    scene.walls = {{Vec3(0.6, 0.8, 0.0), Vec3(0.6, 0.8, 0.0).dot(origin) - 3.0 * size}};
+    const Setting setting(scene);
+    std::vector<Body> bodies;
+    Shadow shadow(scene, setting, scene.duration_s);
+    for (std::size_t i = 0; i < scene.balls.size(); ++i) {
+      const carom::Ball& ball = scene.balls[i];
+      bodies.push_back({0, Vector(ball.position), Vector(ball.velocity), Vector(ball.spin)});
+      shadow.set(i, bodies.back());
+    }
+    shadow.advance(0.0);
+    std::vector<Prospect> prospects;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      shadow.prospects(i, prospects);
+      const auto earliest_s = [&](std::uint32_t partner, bool wall) {
+        const auto found = std::find_if(prospects.begin(), prospects.end(), [&](const Prospect& p) {
+          return p.partner == partner && p.wall == wall;
+        });
+        return found == prospects.end() ? kInfinity : found->earliest_s;
+      };
+      for (std::uint32_t k = 0; k <= bodies.size(); ++k) {
+        const bool wall = k == bodies.size();
+        if (k == i || (wall && i == 0)) continue;  // nothing stops the immovable one at a wall
+        const std::uint32_t partner = wall ? 0 : k;
+        const auto time_s = meeting_s(setting, bodies, i, {0.0, partner, wall}, scene.duration_s);
+        if (!time_s || *time_s > scene.duration_s) continue;
+        EXPECT_LE(earliest_s(partner, wall), *time_s);
+        ++meetings;
+      }
+    }
+  }
+  EXPECT_GE(meetings, 1000);
 }
 
 /// c (x - z_0) (x - z_1) …, by powers.
