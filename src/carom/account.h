@@ -40,9 +40,10 @@ struct Account {
     }
   }
 
-  /// A ball was put somewhere else with the momentum that it has: only the moment of that changes.
-  void book_move(const Vec<Dim>& way, const Vec<Dim>& momentum) {
-    tally.external_angular_impulse += widened<Dim>(way).cross(widened<Dim>(momentum));
+  /// Only a moment, arm × impulse: a ball was put somewhere else with the momentum that it has; or an impulse
+  /// and its opposite act at points that lie apart by the arm.
+  void book_moment(const Vec<Dim>& arm, const Vec<Dim>& impulse) {
+    tally.external_angular_impulse += widened<Dim>(arm).cross(widened<Dim>(impulse));
   }
 };
 

@@ -167,22 +167,6 @@ TEST(EventEvolver, WithoutCollisions_OnlyWallsAct) {
 
 // --- gases
 
-double angular_momentum_scale(const Scenario& scene) {
-  double sum = 0.0;
-  for (const Ball& b : scene.balls) sum += b.mass * b.position.norm() * b.velocity.norm();
-  return sum;
-}
-
-Vec3 angular_momentum_of(const Scenario& scene, const std::vector<BallState>& states) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const Ball& b = scene.balls[i];
-    sum += b.mass * states[i].position.cross(states[i].velocity);
-    sum += b.mass * b.inertia * b.radius * b.radius * states[i].spin;
-  }
-  return sum;
-}
-
 TEST(EventEvolver, Gas_ConservesEnergyAndAccountsForTheWalls_OverThousandsOfImpacts) {
   for (const int dimension : {2, 3}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {

@@ -69,6 +69,24 @@ inline double kinetic_energy_of(const Scenario& scene, const std::vector<BallSta
   return sum;
 }
 
+/// Σ m |x| |v| at the start: what the moments of momenta about the origin are rounded against.
+inline double angular_momentum_scale(const Scenario& scene) {
+  double sum = 0.0;
+  for (const Ball& b : scene.balls) sum += b.mass * b.position.norm() * b.velocity.norm();
+  return sum;
+}
+
+/// About the origin, with spin.
+inline Vec3 angular_momentum_of(const Scenario& scene, const std::vector<BallState>& states) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const Ball& b = scene.balls[i];
+    sum += b.mass * states[i].position.cross(states[i].velocity);
+    sum += b.mass * b.inertia * b.radius * b.radius * states[i].spin;
+  }
+  return sum;
+}
+
 inline Vec3 random_vector(Random& random, int dimension, double size) {
   Vec3 v = Vec3::Zero();
   for (int axis = 0; axis < dimension; ++axis) v[axis] = random.uniform(-size, size);

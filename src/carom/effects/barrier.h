@@ -62,7 +62,7 @@ class Barriers {
     if (draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n)) {
       const Vec<Dim> way = -2.0 * (face.depth + world.radius[ball]) * face.normal;
       world.position.set(ball, world.position[ball] + way);
-      account.book_move(way, mass * world.velocity[ball]);
+      account.book_moment(way, mass * world.velocity[ball]);
     } else {
       const Contact mirror;  // elastic and smooth
       account.book(world.position[ball], Frictionless::on_wall<Dim>(world, ball, face.normal, mirror));

@@ -27,6 +27,10 @@ namespace carom {
 /// A contact is found up to v h too late, so an impact is off by as much and turns by the angle of that
 /// place: order 1 in h. A ball that is faster than its diameter a step can pass another, or a slab, unseen.
 ///
+/// What the correction of positions does to the angular momentum is booked as a moment from outside: nothing
+/// in the scene has done it. So is what friction does between balls that overlap, whose surfaces are not at
+/// one point.
+///
 /// @tparam Traits  what the scene calls for, see traits.h
 template <class Traits>
 class StepEvolver final : public Simulation {
@@ -145,6 +149,11 @@ class StepEvolver final : public Simulation {
     const Place impulse =
         Law::template between<kDim>(world_, touch.a, touch.b, normal, rebounding(surface_, v_n));
     account_.book_pair(world_, touch.a, touch.b, normal, impulse);
+    if constexpr (Law::kFriction) {
+      if (!is_fixed(touch.a) && !is_fixed(touch.b)) {
+        account_.book_moment(gap_between(touch.a, touch.b) * normal, impulse);
+      }
+    }
     return true;
   }
 
@@ -237,7 +246,7 @@ class StepEvolver final : public Simulation {
         const Plane<kDim>& plane = planes_[touch.b];
         const double gap = plane.gap(world_.position[touch.a], world_.radius[touch.a]);
         if (gap >= 0.0 || !plane.faces(world_.position[touch.a])) continue;
-        world_.position.set(touch.a, world_.position[touch.a] - gap * plane.normal);
+        shift(touch.a, -gap * plane.normal);
       } else {
         separate_balls(touch.a, touch.b);
       }
@@ -245,13 +254,24 @@ class StepEvolver final : public Simulation {
   }
 
   void separate_balls(std::uint32_t a, std::uint32_t b) {
-    const Place apart = world_.position[b] - world_.position[a];
-    const double gap = apart.norm() - world_.radius[a] - world_.radius[b];
+    const double gap = gap_between(a, b);
     if (gap >= 0.0) return;
     const Place normal = normal_between<kDim>(world_.position[a], world_.position[b]);
     const double share = gap / (world_.inverse_mass[a] + world_.inverse_mass[b]);
-    world_.position.set(a, world_.position[a] + (share * world_.inverse_mass[a]) * normal);
-    world_.position.set(b, world_.position[b] - (share * world_.inverse_mass[b]) * normal);
+    if (!is_fixed(a)) shift(a, (share * world_.inverse_mass[a]) * normal);
+    if (!is_fixed(b)) shift(b, -(share * world_.inverse_mass[b]) * normal);
+  }
+
+  /// Puts a movable ball somewhere else, with the velocity that it has.
+  void shift(std::uint32_t ball, const Place& way) {
+    world_.position.set(ball, world_.position[ball] + way);
+    account_.book_moment(way, world_.velocity[ball] / world_.inverse_mass[ball]);
+  }
+
+  bool is_fixed(std::uint32_t ball) const { return world_.inverse_mass[ball] == 0.0; }
+
+  double gap_between(std::uint32_t a, std::uint32_t b) const {
+    return (world_.position[b] - world_.position[a]).norm() - world_.radius[a] - world_.radius[b];
   }
 
   World<kDim> world_;
