@@ -30,10 +30,10 @@ double value_at(const Polynomial& f, double t) {
   return value;
 }
 
-std::vector<double> sign_changes(const Polynomial& f, double end) {
-  std::vector<double> roots;
+FewNumbers sign_changes(const Polynomial& f, double end) {
+  FewNumbers roots;
   if (f.size() < 2) return roots;
-  std::vector<double> ends = sign_changes(derivative(f), end);
+  FewNumbers ends = sign_changes(derivative(f), end);
   ends.push_back(end);
   double low = 0.0;
   for (const double high : ends) {

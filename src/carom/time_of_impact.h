@@ -79,14 +79,14 @@ template <int Dim>
 double time_to_touch(const Vec<Dim>& d, const Vec<Dim>& w, const Vec<Dim>& a, double sigma, double rounding,
                      double horizon_s) {
   const double distance = d.norm();
-  const Polynomial from_here = {2.0 * d.dot(w), w.squaredNorm() + d.dot(a), w.dot(a), 0.25 * a.squaredNorm()};
+  const Polynomial from_here(2.0 * d.dot(w), w.squaredNorm() + d.dot(a), w.dot(a), 0.25 * a.squaredNorm());
   if (distance <= sigma) {
     const double scale = distance > 0.0 ? distance : 1.0;
     if (closes(d.dot(w) / scale, d.dot(a) / scale, rounding, horizon_s)) return 0.0;
     return first_fall_through_zero(from_here, horizon_s).value_or(kNever);
   }
-  Polynomial f = {(distance - sigma) * (distance + sigma)};
-  f.insert(f.end(), from_here.begin(), from_here.end());
+  Polynomial f((distance - sigma) * (distance + sigma));
+  for (const double coefficient : from_here) f.push_back(coefficient);
   return first_fall_through_zero(f, horizon_s).value_or(kNever);
 }
 
