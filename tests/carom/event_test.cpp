@@ -1,5 +1,6 @@
 #include "carom/evolvers/event.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "carom/compose.h"
 #include "carom/evolvers/event_queue.h"
 #include "carom/world.h"
 #include "tests/support/scenes.h"
@@ -607,6 +609,42 @@ TEST(EventEvolver, BallAtRestOnABall_IsRefusedAtRunTime) {
 }
 
 // --- what it does not take
+
+TEST(EventEvolver, RefusesWhatLiesAtTheStart_OtherThanOnASmoothWall) {
+  Scenario pile = dropped(0.0, 2.0);
+  EXPECT_EQ(event_refusal(pile), "");
+  pile.balls.push_back(ball(1, 0.1, Vec3(0, 0.3, 0)));
+  EXPECT_THAT(event_refusal(pile), testing::HasSubstr("ball 1 lies on ball 0"));
+  EXPECT_TRUE(refusal(pile, {"", ""}).empty());  // carom itself has chosen another evolver
+
+  Scenario above = pile;
+  above.balls[1].position.y() += 1e-9;  // not there yet
+  EXPECT_EQ(event_refusal(above), "");
+  Scenario beside = pile;
+  beside.balls[1].position = Vec3(0.2, 0.1, 0);  // both on the floor, touching: nothing presses them together
+  EXPECT_EQ(event_refusal(beside), "");
+  Scenario thrown = pile;
+  thrown.balls[1].velocity.y() = 1.0;
+  EXPECT_EQ(event_refusal(thrown), "");
+  Scenario apart = pile;
+  apart.effects.collisions = false;
+  EXPECT_EQ(event_refusal(apart), "");
+
+  Scenario on_immovable = dropped(5.0, 2.0);
+  on_immovable.balls.push_back(
+      ball(std::numeric_limits<double>::infinity(), 0.1, on_immovable.balls[0].position - Vec3(0, 0.2, 0)));
+  EXPECT_THAT(event_refusal(on_immovable), testing::HasSubstr("ball 0 lies on ball 1"));
+
+  Scenario corner = dropped(0.0, 2.0);
+  corner.walls = {{Vec3(0.6, 0.8, 0), -0.1}, {Vec3(-0.6, 0.8, 0), -0.1}};
+  corner.balls[0].position = Vec3::Zero();
+  EXPECT_THAT(event_refusal(corner), testing::HasSubstr("corner"));
+
+  Scenario rough = dropped(0.0, 2.0);
+  rough.effects.spin = true;
+  rough.wall_contact.friction = 0.3;
+  EXPECT_THAT(event_refusal(rough), testing::HasSubstr("friction"));
+}
 
 TEST(EventEvolver, Refuses_WithAReason) {
   const auto refuses = [](auto change) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carom/evolvers/event_start.h"
+
 namespace carom {
 
 namespace {
@@ -37,7 +39,7 @@ std::string event_refusal(const Scenario& scene) {
     return "under gravity and with restitution below 1 balls come to rest after infinitely many impacts, "
            "which it cannot jump over";
   }
-  return {};
+  return lies_at_start(scene);
 }
 
 }  // namespace carom

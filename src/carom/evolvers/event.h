@@ -8,6 +8,10 @@
 
 namespace carom {
 
+/// Of a position's rounding: the height of a rebound that is none. A position is the sum of a few terms, each
+/// rounded.
+inline constexpr double kRestEpsilons = 4.0;
+
 /// Why the event-driven evolver does not take the scene, in a sentence; empty where it does.
 std::string event_refusal(const Scenario& scene);
 

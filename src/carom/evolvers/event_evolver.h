@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "carom/evolvers/event.h"
 #include "carom/evolvers/event_cells.h"
 #include "carom/evolvers/event_flights.h"
 #include "carom/evolvers/event_queue.h"
@@ -128,10 +129,6 @@ class EventEvolver final : public Simulation {
   /// Rapid impacts in a row that still lose energy: in a row of touching balls each is hit, hits the next,
   /// and may meet both once more.
   static constexpr std::uint8_t kMostRapid = 4;
-
-  /// Of a position's rounding: the height of a rebound that is none. A position is the sum of a few terms,
-  /// each rounded.
-  static constexpr double kRestEpsilons = 4.0;
 
   /// Events within a share of the step after which something must be wrong: more than any count of elastic
   /// impacts asks for (Galperin's are 3.1 million at a mass ratio of 10¹²), and many for each ball, should

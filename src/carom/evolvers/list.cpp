@@ -22,8 +22,8 @@ std::unique_ptr<Simulation> make_event_3d(const Scenario& scene, Parts<3> /*part
 /// Elastic balls without gravity never come to rest, so that nothing is left to what `event` cannot do; and
 /// it rounds places once an impact, not once a step.
 bool nothing_rests(const Scenario& scene) {
-  return event_refusal(scene).empty() && !scene.effects.gravity && scene.ball_contact.restitution == 1.0 &&
-         scene.wall_contact.restitution == 1.0;
+  return !scene.effects.gravity && scene.ball_contact.restitution == 1.0 &&
+         scene.wall_contact.restitution == 1.0 && event_refusal(scene).empty();
 }
 
 bool always(const Scenario& /*scene*/) {
