@@ -43,8 +43,9 @@ class ContactSolver {
  public:
   using Contact = KeptContact<Dim>;
 
-  void clear() { contacts_.clear(); }
-  void add(const Contact& contact) { contacts_.push_back(contact); }
+  /// Sweeps to do: as many as it takes.
+  static constexpr int kUntilSolved = std::numeric_limits<int>::max();
+
   std::vector<Contact>& contacts() { return contacts_; }
   const std::vector<Contact>& contacts() const { return contacts_; }
 
@@ -63,13 +64,14 @@ class ContactSolver {
   /// @param response   of a ball, 1/kg: what a unit of push changes of its u
   /// @param tolerance  in u's unit: sweeps end once none changes a u_n by more, or by more than the pushes
   /// round
+  /// @param sweeps     kUntilSolved, or so few that they are all that is done: a first guess
   template <class Response>
   bool solve(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
-             const Response& response, double tolerance) {
+             const Response& response, double tolerance, int sweeps) {
     double largest_change = std::numeric_limits<double>::infinity();
     double rounding = tolerance;
     double first_change = 0.0;
-    for (int sweep = 0; sweep < kMostSweeps && largest_change > rounding; ++sweep) {
+    for (int sweep = 0; sweep < std::min(kMostSweeps, sweeps) && largest_change > rounding; ++sweep) {
       if (sweep == 1) first_change = largest_change;
       if (!(largest_change <= kDiverged * first_change) && sweep > 1) return false;
       largest_change = 0.0;
@@ -84,6 +86,7 @@ class ContactSolver {
         rounding = std::max(rounding, kRoundings * kEpsilon * size);
       }
     }
+    if (sweeps != kUntilSolved) return largest_change <= rounding;
     if constexpr (!kFriction) {
       if (largest_change > rounding) solve_directly(world, u, w, response, rounding);
       return true;
@@ -122,12 +125,12 @@ class ContactSolver {
     return 2.0 - 1.0 / (1.0 + sweep / kRamp);
   }
 
-  /// (1) by complementarity.h, for all contacts from the beginning.
+  /// (1) by complementarity.h, for many contacts from where the sweeps have come to.
   template <class Response>
   void solve_directly(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
                       const Response& response, double rounding) {
     std::vector<std::uint32_t> balls;
-    for (Contact& contact : contacts_) {
+    for (const Contact& contact : contacts_) {
       apply(world, u, w, response, contact, -contact.push * contact.normal);
       balls.push_back(contact.a);
       if (!contact.wall) balls.push_back(contact.b);
@@ -142,16 +145,20 @@ class ContactSolver {
     };
     const auto count = static_cast<Eigen::Index>(contacts_.size());
     Eigen::VectorXd above(count);
+    Eigen::VectorXd pushes(count);
     for (Eigen::Index c = 0; c < count; ++c) {
       const Contact& contact = contacts_[static_cast<std::size_t>(c)];
       add(c, contact.a, contact.wall ? contact.normal : Vec<Dim>(-contact.normal));
       if (!contact.wall) add(c, contact.b, contact.normal);
       above[c] = opening(contact, u) - contact.least;
+      pushes[c] = contact.push;
     }
     Eigen::SparseMatrix<double> normals(Dim * static_cast<Eigen::Index>(balls.size()), count);
     normals.setFromTriplets(entries.begin(), entries.end());
-    const Complementary found =
-        solve_complementarity(normals, above, Eigen::VectorXd::Constant(count, rounding));
+    const Eigen::VectorXd roundings = Eigen::VectorXd::Constant(count, rounding);
+    const Complementary found = count <= kMostPivoted
+                                    ? solve_by_pivoting(normals, above, roundings)
+                                    : solve_by_sweeps_from(pushes, normals, above, roundings);
     for (Eigen::Index c = 0; c < count; ++c) {
       Contact& contact = contacts_[static_cast<std::size_t>(c)];
       contact.push = found.impulse[c];

@@ -31,14 +31,16 @@ class Neighbours {
     broad_phase_->find_near(ball, others);
   }
 
-  /// After a new flight has begun: tells the broad phase where it may lead.
-  void widen(std::size_t ball) {
+  /// After a new flight has begun: tells the broad phase where it may lead. Returns whether the ball may meet
+  /// more than before.
+  bool widen(std::size_t ball) {
     const double moved = (flights_.world().position[ball] - start_[ball]).norm();
     const double bound =
         flights_.world().radius[ball] + moved + flights_.path_bound(ball, flights_.left_s(ball));
-    if (bound <= bound_[ball]) return;
+    if (bound <= bound_[ball]) return false;
     bound_[ball] = bound;
     broad_phase_->bound_grew(ball);
+    return true;
   }
 
   std::string_view name() const { return broad_phase_->name(); }

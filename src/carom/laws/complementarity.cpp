@@ -1,6 +1,7 @@
 #include "carom/laws/complementarity.h"
 
 #include <Eigen/QR>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -27,6 +28,16 @@ constexpr int kSweepsInAPass = 8;
 
 /// Passes that are made at most. What they leave undone is for the next round of the impact.
 constexpr int kMostPasses = 200;
+
+/// Of the diagonal of BᵀB. Whatever the normals do not span to more than its root, 10⁻⁶ of their length, is
+/// approached over several passes.
+constexpr double kProximal = 1e-12;
+
+/// Proximal steps with one factorization: the second takes out what rounding and kProximal left of the first.
+constexpr int kRefinements = 2;
+
+/// Three components of two balls.
+constexpr std::size_t kMostEntriesOfANormal = 6;
 
 /// Pivots per contact that are made at most. Each raises the dual objective, so none comes twice but for
 /// rounding; about one per contact is needed.
@@ -159,16 +170,21 @@ class DualActiveSet {
 /// then solved as equations. Both lower ½ λᵀBᵀBλ + λᵀw, whose least value over λ >= 0 solves (1). The sweeps
 /// alone would need O(n²) of them to carry an impulse through n balls in a row.
 /// Source: M. Silcowitz, S. Niebur, K. Erleben, "Projected Gauss-Seidel subspace minimization method for
-/// interactive rigid body dynamics", GRAPP (2010).
+/// interactive rigid body dynamics", GRAPP (2010); the projected step, J. J. Moré, G. Toraldo, "On the
+/// solution of large quadratic programming problems with bound constraints", SIAM J. Optim. 1, 93 (1991).
 class SweepsAndSubspace {
  public:
-  SweepsAndSubspace(const SparseMatrix<double>& normals, const VectorXd& w, const VectorXd& rounding)
+  SweepsAndSubspace(const SparseMatrix<double>& normals, const VectorXd& w, const VectorXd& rounding,
+                    VectorXd start)
       : normals_(normals),
         absolute_normals_(normals.cwiseAbs()),
         start_(w),
         rounding_(rounding),
-        impulse_(VectorXd::Zero(w.size())),
-        moved_(VectorXd::Zero(normals.rows())) {}
+        impulse_(std::move(start)),
+        moved_(normals * impulse_),
+        squares_(w.size()) {
+    for (Index c = 0; c < w.size(); ++c) squares_[c] = normals_.col(c).squaredNorm();
+  }
 
   Complementary solve() {
     for (int pass = 0; pass < kMostPasses; ++pass) {
@@ -183,7 +199,8 @@ class SweepsAndSubspace {
   void relax_all() {
     for (Index c = 0; c < start_.size(); ++c) {
       const double w = start_[c] + normals_.col(c).dot(moved_);
-      const double next = std::max(0.0, impulse_[c] - w / normals_.col(c).squaredNorm());
+      const double next = std::max(0.0, impulse_[c] - w / squares_[c]);
+      if (next == impulse_[c]) continue;
       moved_ += (next - impulse_[c]) * normals_.col(c);
       impulse_[c] = next;
     }
@@ -191,33 +208,58 @@ class SweepsAndSubspace {
 
   VectorXd openings() const { return start_ + normals_.transpose() * moved_; }
 
-  /// Steps towards w' = 0 at the contacts that push, as far as none has to pull.
+  /// Steps towards w' = 0 at the contacts that push. What would have to pull stops where it does not push; if
+  /// that is no gain, all stop where the first of them does.
   void solve_pushing() {
-    const VectorXd pushing = (impulse_.array() > 0.0).cast<double>();
-    const VectorXd step = conjugate_gradients(pushing, -openings().cwiseProduct(pushing));
+    const VectorXd step = newton_step();
     double share = 1.0;
     for (Index c = 0; c < step.size(); ++c) {
       if (step[c] < 0.0) share = std::min(share, impulse_[c] / -step[c]);
     }
-    impulse_ = (impulse_ + share * step).cwiseMax(0.0);
+    const VectorXd w = openings();
+    VectorXd next = (impulse_ + step).cwiseMax(0.0);
+    if (share < 1.0 && change_of_objective(next - impulse_, w) >= 0.0) {
+      next = (impulse_ + share * step).cwiseMax(0.0);
+    }
+    impulse_ = next;
     moved_ = normals_ * impulse_;
   }
 
-  /// x of BᵀB x = right side, over the contacts whose `pushing` is 1. Redundant contacts do not disturb it.
-  VectorXd conjugate_gradients(const VectorXd& pushing, VectorXd residual) const {
-    VectorXd x = VectorXd::Zero(residual.size());
-    VectorXd direction = residual;
-    double square = residual.squaredNorm();
-    // In exact arithmetic n steps are enough; rounding asks for some more, and what is left for another pass.
-    for (Index step = 0; step < 2 * residual.size() && !within_rounding(residual); ++step) {
-      const VectorXd image = normals_ * direction;
-      const double advance = square / image.squaredNorm();
-      x += advance * direction;
-      residual -= advance * (normals_.transpose() * image).cwiseProduct(pushing);
-      const double last = std::exchange(square, residual.squaredNorm());
-      direction = residual + (square / last) * direction;
+  double change_of_objective(const VectorXd& step, const VectorXd& w) const {
+    return w.dot(step) + 0.5 * (normals_ * step).squaredNorm();
+  }
+
+  /// x of BᵀB x = -w' over the contacts that push, 0 at the others. Redundant contacts leave BᵀB singular:
+  /// each solution is the nearest to the last one (a proximal step), with the share kProximal of the
+  /// diagonal.
+  VectorXd newton_step() const {
+    VectorXd step = VectorXd::Zero(impulse_.size());
+    std::vector<Index> pushing;
+    for (Index c = 0; c < impulse_.size(); ++c) {
+      if (impulse_[c] > 0.0) pushing.push_back(c);
     }
-    return x;
+    if (pushing.empty()) return step;
+    const auto count = static_cast<Index>(pushing.size());
+    SparseMatrix<double> active(normals_.rows(), count);
+    active.reserve(Eigen::VectorXi::Constant(count, static_cast<int>(kMostEntriesOfANormal)));
+    for (Index k = 0; k < count; ++k) {
+      for (SparseMatrix<double>::InnerIterator at(normals_, pushing[static_cast<std::size_t>(k)]); at; ++at) {
+        active.insert(at.row(), k) = at.value();
+      }
+    }
+    SparseMatrix<double> matrix = active.transpose() * active;
+    for (Index k = 0; k < count; ++k) matrix.coeffRef(k, k) *= 1.0 + kProximal;
+    const Eigen::SimplicialLDLT<SparseMatrix<double>> factors(matrix);
+    if (factors.info() != Eigen::Success) return step;
+    VectorXd residual = -openings()(pushing);
+    VectorXd x = VectorXd::Zero(count);
+    for (int refinement = 0; refinement < kRefinements; ++refinement) {
+      const VectorXd more = factors.solve(residual);
+      x += more;
+      residual -= active.transpose() * (active * more);
+    }
+    if (x.allFinite()) step(pushing) = x;
+    return step;
   }
 
   bool within_rounding(const VectorXd& residual) const {
@@ -235,7 +277,8 @@ class SweepsAndSubspace {
   const VectorXd& start_;
   const VectorXd& rounding_;
   VectorXd impulse_;
-  VectorXd moved_;  ///< B λ
+  VectorXd moved_;    ///< B λ
+  VectorXd squares_;  ///< |b_c|²
 };
 
 }  // namespace
@@ -247,7 +290,12 @@ Complementary solve_by_pivoting(const SparseMatrix<double>& normals, const Vecto
 
 Complementary solve_by_sweeps(const SparseMatrix<double>& normals, const VectorXd& w,
                               const VectorXd& rounding) {
-  return SweepsAndSubspace(normals, w, rounding).solve();
+  return SweepsAndSubspace(normals, w, rounding, VectorXd::Zero(w.size())).solve();
+}
+
+Complementary solve_by_sweeps_from(const VectorXd& start, const SparseMatrix<double>& normals,
+                                   const VectorXd& w, const VectorXd& rounding) {
+  return SweepsAndSubspace(normals, w, rounding, start).solve();
 }
 
 Complementary solve_complementarity(const SparseMatrix<double>& normals, const VectorXd& w,

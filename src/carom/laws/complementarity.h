@@ -37,4 +37,8 @@ Complementary solve_by_pivoting(const Eigen::SparseMatrix<double>& normals, cons
 Complementary solve_by_sweeps(const Eigen::SparseMatrix<double>& normals, const Eigen::VectorXd& w,
                               const Eigen::VectorXd& rounding);
 
+/// Sweeps that begin from impulses `start` >= 0 near the solution; w is without them.
+Complementary solve_by_sweeps_from(const Eigen::VectorXd& start, const Eigen::SparseMatrix<double>& normals,
+                                   const Eigen::VectorXd& w, const Eigen::VectorXd& rounding);
+
 }  // namespace carom
