@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -35,10 +36,22 @@ class Crowd {
         cluster_(cluster),
         solver_(solver) {}
 
-  void begin_step() { ++steps_; }
+  void begin_step() {
+    ++steps_;
+    bearing_.clear();
+  }
 
   /// Whether a crowd has taken the ball in, in this step.
   bool has(std::size_t ball) const { return !crowd_.empty() && crowd_[ball] == steps_; }
+
+  /// Calls f(contact, impulse) for each contact of the last impact: what this has added to what had acted
+  /// before, N s, on its ball b, or on a from a plane.
+  template <class F>
+  void for_each_impulse(F f) const {
+    for (std::size_t k = 0; k < solver_.contacts().size(); ++k) {
+      f(solver_.contacts()[k], impulse_of(solver_.contacts()[k]) - acted_[k]);
+    }
+  }
 
   /// Whether the last impact was more than what fields give in a step.
   bool had_impact() const { return impact_; }
@@ -57,10 +70,14 @@ class Crowd {
         look_again_where_it_leads_farther();
         solved = true;
       } else {
-        return;
+        break;
       }
     }
     if (!solved) solve(Solver::kUntilSolved);
+    for (const Kept& contact : solver_.contacts()) {
+      const Bearing bearing = {side_of(contact) * impulse_of(contact), time_s};
+      bearing_[contact_key(contact.a, contact.b, contact.wall)] = bearing;
+    }
   }
 
  private:
@@ -70,6 +87,17 @@ class Crowd {
   static constexpr double kCrowdShare = 1.0 - 1e-6;
   /// Sweeps that carry an impact one ring farther, and not yet to where it ends.
   static constexpr int kSweepsInARound = 8;
+
+  /// Of the speed with which a gap is closed: what kCrowdShare has left of it by the next impact is no
+  /// opening.
+  static constexpr double kOpening = 1e-4;
+
+  /// What a contact has pushed in the last impact that it took part in, on the ball with the higher number or
+  /// from a plane, and when that was.
+  struct Bearing {
+    Place impulse;
+    double time_s;
+  };
 
   /// A contact that may come to push.
   struct Candidate {
@@ -82,6 +110,7 @@ class Crowd {
   void begin(const ContactSeed& seed, double time_s) {
     crowd_.resize(flights_.size(), 0);
     solver_.contacts().clear();
+    acted_.clear();
     candidates_.clear();
     met_.clear();
     impact_ = false;
@@ -100,14 +129,14 @@ class Crowd {
     solver_.solve(world, world.velocity, world.spin, response, cluster_.rule().crowd_tolerance(), sweeps);
   }
 
-  /// Adds the contacts of members that the rest of the step would close below zero. Returns whether there
-  /// were any.
+  /// Adds the contacts of members that the rest of the step would close below zero, and those that bear and
+  /// would open. Returns whether there were any.
   bool add_contacts() {
     const std::size_t before = solver_.contacts().size();
     std::size_t next = 0;
     while (looked_at_ < cluster_.members().size() || next < candidates_.size()) {
       while (looked_at_ < cluster_.members().size()) find_candidates(cluster_.members()[looked_at_++]);
-      for (; next < candidates_.size(); ++next) add_if_it_closes(next);
+      for (; next < candidates_.size(); ++next) add_if_it_closes_or_lets_go(next);
     }
     return solver_.contacts().size() > before;
   }
@@ -137,19 +166,42 @@ class Crowd {
     candidates_.push_back({contact, false});
   }
 
-  void add_if_it_closes(std::size_t number) {
-    Candidate& candidate = candidates_[number];
-    if (candidate.taken) return;
-    const Kept contact = candidate.contact;
+  void add_if_it_closes_or_lets_go(std::size_t number) {
+    if (candidates_[number].taken) return;
+    Kept contact = candidates_[number].contact;
     const double u_n = contact.normal.dot(velocity_of_b(contact) - world().velocity[contact.a]) *
                        (contact.wall ? -1.0 : 1.0);
     const double rounding = cluster_.rule().rounding();
-    if (u_n >= contact.least - rounding && !is_seed(contact)) return;
-    candidate.taken = true;
+    const bool closes = u_n < contact.least - rounding || is_seed(contact);
+    const double still = rounding + 2.0 * cluster_.rule().crowd_tolerance() - kOpening * contact.least;
+    if (!closes && u_n <= contact.least + still) return;
+    take_over_what_is_not_spent(contact);
+    if (!closes && contact.push == 0.0) return;
+    candidates_[number].taken = true;
     solver_.contacts().push_back(contact);
+    acted_.push_back(impulse_of(contact));
     impact_ = impact_ || u_n < contact.least - flights_.field_speed() - rounding;
     if (!contact.wall && !cluster_.has(contact.b) && cluster_.join(contact.b, time_s_)) enter(contact.b);
   }
+
+  void take_over_what_is_not_spent(Kept& contact) const {
+    if (bearing_.empty()) return;
+    const auto found = bearing_.find(contact_key(contact.a, contact.b, contact.wall));
+    if (found == bearing_.end()) return;
+    const double share = (flights_.step_s() - time_s_) / (flights_.step_s() - found->second.time_s);
+    const Place unspent = (share * side_of(contact)) * found->second.impulse;
+    contact.push = std::max(0.0, contact.normal.dot(unspent));
+    if constexpr (kFriction) {
+      contact.drag = unspent - contact.normal.dot(unspent) * contact.normal;
+      const double most = contact.friction * contact.push;
+      if (const double size = contact.drag.norm(); size > most) contact.drag *= most / size;
+    }
+  }
+
+  /// Which of a contact's balls is a, and which b, is as it was met: -1 where b has the lower number.
+  static double side_of(const Kept& contact) { return contact.wall || contact.a < contact.b ? 1.0 : -1.0; }
+
+  static Place impulse_of(const Kept& contact) { return contact.push * contact.normal + contact.drag; }
 
   /// At the end of the step; of a plane none.
   Place velocity_of_b(const Kept& contact) const {
@@ -197,6 +249,8 @@ class Crowd {
   Solver& solver_;
   ContactSeed seed_{};
   double time_s_ = 0.0;
+  std::vector<Place> acted_;  ///< N s, of each of the solver's contacts: what it began with
+  std::unordered_map<std::uint64_t, Bearing> bearing_;  ///< in this step
   std::vector<Candidate> candidates_;
   std::unordered_set<std::uint64_t> met_;  ///< what candidates_ has
   std::size_t looked_at_ = 0;              ///< members whose candidates have been found

@@ -100,10 +100,10 @@ class Resting {
     crowd_.join(seed, time_s);
     if (crowd_.had_impact()) ++flights_.account().tally.impacts;
     for (const std::uint32_t ball : members()) flights_.coast(ball);
-    for (const Kept& contact : solver_.contacts()) {
-      book(contact);
+    crowd_.for_each_impulse([this](const Kept& contact, const Vec<Dim>& impulse) {
+      book(contact, impulse);
       held_.hold(contact.a, contact.b, contact.wall);
-    }
+    });
   }
 
   /// Whether a crowd has taken the ball in, in this step.
@@ -164,14 +164,14 @@ class Resting {
     }
     if (impact) ++flights_.account().tally.impacts;
     solver_.solve(world, world.velocity, world.spin, response, rule().tolerance(), Solver::kUntilSolved);
-    for (const Kept& contact : solver_.contacts()) book(contact);
+    for (const Kept& contact : solver_.contacts()) {
+      book(contact, contact.push * contact.normal + contact.drag);
+    }
   }
 
-  void book(const Kept& contact) {
+  void book(const Kept& contact, const Vec<Dim>& impulse) {
     const std::optional<double> sign = external(contact);
-    if (!sign) return;
-    const Vec<Dim> impulse = *sign * (contact.push * contact.normal + contact.drag);
-    flights_.account().book(world().position[contact.a] + arm_of(contact), impulse);
+    if (sign) flights_.account().book(world().position[contact.a] + arm_of(contact), *sign * impulse);
   }
 
   /// Statics for the rest of the step, or until a slip ends. Returns false where there is none.

@@ -36,6 +36,9 @@ constexpr double kProximal = 1e-12;
 /// Proximal steps with one factorization: the second takes out what rounding and kProximal left of the first.
 constexpr int kRefinements = 2;
 
+/// Of a step: what is not lowered by less of it is not lowered at all.
+constexpr double kLeastShare = 0x1p-20;
+
 /// Three components of two balls.
 constexpr std::size_t kMostEntriesOfANormal = 6;
 
@@ -208,17 +211,15 @@ class SweepsAndSubspace {
 
   VectorXd openings() const { return start_ + normals_.transpose() * moved_; }
 
-  /// Steps towards w' = 0 at the contacts that push. What would have to pull stops where it does not push; if
-  /// that is no gain, all stop where the first of them does.
+  /// Steps towards w' = 0 at the contacts that push. What would have to pull stops where it does not push: the
+  /// path is bent there, and taken as far, by halves, as it lowers the objective.
   void solve_pushing() {
     const VectorXd step = newton_step();
-    double share = 1.0;
-    for (Index c = 0; c < step.size(); ++c) {
-      if (step[c] < 0.0) share = std::min(share, impulse_[c] / -step[c]);
-    }
     const VectorXd w = openings();
     VectorXd next = (impulse_ + step).cwiseMax(0.0);
-    if (share < 1.0 && change_of_objective(next - impulse_, w) >= 0.0) {
+    double share = 1.0;
+    while (share > kLeastShare && change_of_objective(next - impulse_, w) > 0.0) {
+      share *= 0.5;
       next = (impulse_ + share * step).cwiseMax(0.0);
     }
     impulse_ = next;
