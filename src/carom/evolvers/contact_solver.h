@@ -6,24 +6,12 @@
 #include <limits>
 #include <vector>
 
+#include "carom/evolvers/kept_contact.h"
 #include "carom/laws/complementarity.h"
+#include "carom/laws/cone.h"
 #include "carom/world.h"
 
 namespace carom {
-
-/// A contact that is kept closed: ball a and ball b, or ball a and plane b.
-template <int Dim>
-struct KeptContact {
-  std::uint32_t a;
-  std::uint32_t b;
-  bool wall;
-  Vec<Dim> normal;                   ///< unit; from a to b, or from the plane to ball a
-  double friction = 0.0;             ///< μ
-  double least = 0.0;                ///< what u_n may not fall below, in the unit of u
-  Vec<Dim> slip = Vec<Dim>::Zero();  ///< unit direction in which the contact slides; zero where it may stick
-  double push = 0.0;  ///< λ >= 0 along the normal, kg × the unit of u: on b, or on a from a plane
-  Vec<Dim> drag = Vec<Dim>::Zero();  ///< the tangential part
-};
 
 /// Contacts that stay closed, solved together: balls that lie on a wall, on each other, or in a pile.
 ///
@@ -43,9 +31,6 @@ class ContactSolver {
  public:
   using Contact = KeptContact<Dim>;
 
-  /// Sweeps to do: as many as it takes.
-  static constexpr int kUntilSolved = std::numeric_limits<int>::max();
-
   std::vector<Contact>& contacts() { return contacts_; }
   const std::vector<Contact>& contacts() const { return contacts_; }
 
@@ -64,34 +49,47 @@ class ContactSolver {
   /// @param response   of a ball, 1/kg: what a unit of push changes of its u
   /// @param tolerance  in u's unit: sweeps end once none changes a u_n by more, or by more than the pushes
   /// round
-  /// @param sweeps     kUntilSolved, or so few that they are all that is done: a first guess
   template <class Response>
   bool solve(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
+             const Response& response, double tolerance) {
+    Course course = sweep(world, u, w, response, tolerance, kMostSweeps);
+    if constexpr (!kFriction) {
+      if (!course.converged()) solve_directly(world, u, w, response, course.rounding);
+      return true;
+    } else {
+      const int attempts = contacts_.size() <= kFewContacts ? kMostAttemptsOfFew : kMostAttempts;
+      for (int attempt = 0; !course.converged() && attempt < attempts; ++attempt) {
+        if (solve_cone_directly(world, u, w, response, tolerance)) return true;
+        course = sweep(world, u, w, response, tolerance, kMostSweeps);
+        if (course.diverged) return false;
+      }
+      return course.converged();
+    }
+  }
+
+  /// The first guess at a solution: some sweeps.
+  template <class Response>
+  void guess(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
              const Response& response, double tolerance, int sweeps) {
-    double largest_change = std::numeric_limits<double>::infinity();
-    double rounding = tolerance;
-    double first_change = 0.0;
-    for (int sweep = 0; sweep < std::min(kMostSweeps, sweeps) && largest_change > rounding; ++sweep) {
-      if (sweep == 1) first_change = largest_change;
-      if (!(largest_change <= kDiverged * first_change) && sweep > 1) return false;
-      largest_change = 0.0;
-      rounding = tolerance;
-      for (Contact& contact : contacts_) {
-        double change = relax_push(world, u, w, response, contact, relaxation(sweep));
-        if constexpr (kFriction) {
-          if (contact.friction > 0.0) change = std::max(change, relax_drag(world, u, w, response, contact));
-        }
-        largest_change = std::max(largest_change, change);
-        const double size = contact.push * sum_of_responses(response, contact);
-        rounding = std::max(rounding, kRoundings * kEpsilon * size);
+    sweep(world, u, w, response, tolerance, sweeps);
+  }
+
+  /// Like solve(), but of (2) only what comes out after kMostTurns turns of (1), exactly, with the drags as
+  /// they are, and sweeps over both. The last is (1): nothing overlaps, however friction may differ.
+  template <class Response>
+  void solve_openings(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
+                      const Response& response, double tolerance) {
+    Course course = sweep(world, u, w, response, tolerance, kMostSweeps);
+    if (course.converged()) return;
+    if constexpr (kFriction) {
+      if (contacts_.size() <= kFewContacts && solve_cone_directly(world, u, w, response, tolerance)) return;
+      for (int turn = 0; turn < kMostTurns; ++turn) {
+        solve_directly(world, u, w, response, course.rounding);
+        course = sweep(world, u, w, response, tolerance, kSweepsInATurn);
+        if (course.converged()) return;
       }
     }
-    if (sweeps != kUntilSolved) return largest_change <= rounding;
-    if constexpr (!kFriction) {
-      if (largest_change > rounding) solve_directly(world, u, w, response, rounding);
-      return true;
-    }
-    return largest_change <= rounding;
+    solve_directly(world, u, w, response, course.rounding);
   }
 
   /// How fast the contact opens, in u's unit.
@@ -108,13 +106,52 @@ class ContactSolver {
   }
 
  private:
-  /// From the pushes of the step before, few sweeps do. Without friction what they leave is solved directly;
-  /// Coulomb's cone is left to them alone.
-  static constexpr int kMostSweeps = kFriction ? 2000 : 64;
+  /// From the pushes of the step before, few sweeps do. What they leave is solved directly.
+  static constexpr int kMostSweeps = 64;
+  /// Newton's method on Coulomb's cone, and sweeps that bring it nearer, by turns. What two turns do not
+  /// solve for many contacts goes to the crowd; few cost little.
+  static constexpr int kMostAttempts = 2;
+  static constexpr int kMostAttemptsOfFew = 12;
+  static constexpr std::size_t kFewContacts = 16;
+  /// See solve_openings().
+  static constexpr int kMostTurns = 3;
+  static constexpr int kSweepsInATurn = 24;
   /// Sweeps that change more than the first by this factor do not converge.
   static constexpr double kDiverged = 1e3;
   /// Of a push, in units of ε: up to twelve neighbours push as much on each ball of a contact.
   static constexpr double kRoundings = 4.0;
+
+  /// How a number of sweeps went.
+  struct Course {
+    double change = std::numeric_limits<double>::infinity();  ///< the largest of the last sweep, in u's unit
+    double rounding = 0.0;
+    bool diverged = false;
+    bool converged() const { return !diverged && change <= rounding; }
+  };
+
+  template <class Response>
+  Course sweep(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
+               const Response& response, double tolerance, int sweeps) {
+    Course course;
+    double first_change = 0.0;
+    for (int sweep = 0; sweep < sweeps && !(course.change <= course.rounding); ++sweep) {
+      if (sweep == 1) first_change = course.change;
+      course.diverged = sweep > 1 && !(course.change <= kDiverged * first_change);
+      if (course.diverged) return course;
+      course.change = 0.0;
+      course.rounding = tolerance;
+      for (Contact& contact : contacts_) {
+        double change = relax_push(world, u, w, response, contact, relaxation(sweep));
+        if constexpr (kFriction) {
+          if (contact.friction > 0.0) change = std::max(change, relax_drag(world, u, w, response, contact));
+        }
+        course.change = std::max(course.change, change);
+        const double size = contact.push * sum_of_responses(response, contact);
+        course.rounding = std::max(course.rounding, kRoundings * kEpsilon * size);
+      }
+    }
+    return course;
+  }
 
   /// ω of (3). With ω = 1 a row of n balls takes about n² sweeps for each factor e, with the best ω < 2, that
   /// nears 2 as rows grow, about n. Which it is nobody knows beforehand, so it nears 2 as the sweeps go on;
@@ -129,41 +166,70 @@ class ContactSolver {
   template <class Response>
   void solve_directly(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
                       const Response& response, double rounding) {
-    std::vector<std::uint32_t> balls;
-    for (const Contact& contact : contacts_) {
-      apply(world, u, w, response, contact, -contact.push * contact.normal);
-      balls.push_back(contact.a);
-      if (!contact.wall) balls.push_back(contact.b);
-    }
-    std::sort(balls.begin(), balls.end());
-    balls.erase(std::unique(balls.begin(), balls.end()), balls.end());
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](Eigen::Index column, std::uint32_t ball, const Vec<Dim>& normal) {
-      const auto row = Dim * (std::lower_bound(balls.begin(), balls.end(), ball) - balls.begin());
-      const Vec<Dim> weighted = std::sqrt(response(ball)) * normal;
-      for (int axis = 0; axis < Dim; ++axis) entries.emplace_back(row + axis, column, weighted[axis]);
-    };
     const auto count = static_cast<Eigen::Index>(contacts_.size());
-    Eigen::VectorXd above(count);
     Eigen::VectorXd pushes(count);
+    Eigen::VectorXd above(count);
     for (Eigen::Index c = 0; c < count; ++c) {
-      const Contact& contact = contacts_[static_cast<std::size_t>(c)];
-      add(c, contact.a, contact.wall ? contact.normal : Vec<Dim>(-contact.normal));
-      if (!contact.wall) add(c, contact.b, contact.normal);
-      above[c] = opening(contact, u) - contact.least;
-      pushes[c] = contact.push;
+      pushes[c] = number(c).push;
+      exchange(world, u, w, response, number(c), number(c).drag);
     }
-    Eigen::SparseMatrix<double> normals(Dim * static_cast<Eigen::Index>(balls.size()), count);
-    normals.setFromTriplets(entries.begin(), entries.end());
+    for (Eigen::Index c = 0; c < count; ++c) above[c] = opening(number(c), u) - number(c).least;
+    const Eigen::SparseMatrix<double> normals = directions_of<1, Dim>(contacts_, world, response);
     const Eigen::VectorXd roundings = Eigen::VectorXd::Constant(count, rounding);
     const Complementary found = count <= kMostPivoted
                                     ? solve_by_pivoting(normals, above, roundings)
                                     : solve_by_sweeps_from(pushes, normals, above, roundings);
     for (Eigen::Index c = 0; c < count; ++c) {
-      Contact& contact = contacts_[static_cast<std::size_t>(c)];
-      contact.push = found.impulse[c];
-      apply(world, u, w, response, contact, contact.push * contact.normal);
+      const Vec<Dim> impulse = found.impulse[c] * number(c).normal + number(c).drag;
+      exchange(world, u, w, response, number(c), impulse);
     }
+  }
+
+  /// (1) and (2) by cone.h, from where the sweeps have come to.
+  template <class Response>
+  bool solve_cone_directly(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
+                           const Response& response, double tolerance) {
+    const auto count = static_cast<Eigen::Index>(contacts_.size());
+    ConeProblem problem{Dim,
+                        directions_of<Dim, Dim>(contacts_, world, response),
+                        Eigen::VectorXd(Dim * count),
+                        Eigen::VectorXd(count),
+                        Eigen::VectorXd(Dim * count),
+                        tolerance};
+    Eigen::VectorXd impulse(Dim * count);
+    for (Eigen::Index c = 0; c < count; ++c) {
+      const Frame<Dim> frame = frame_of<Dim>(number(c));
+      impulse.segment<Dim>(Dim * c) =
+          frame.transpose() * (number(c).push * number(c).normal + number(c).drag);
+      problem.slip.segment<Dim>(Dim * c) = frame.transpose() * number(c).slip;
+      problem.slip[Dim * c] = 0.0;
+      problem.friction[c] = number(c).friction;
+    }
+    for (Eigen::Index c = 0; c < count; ++c) exchange(world, u, w, response, number(c), Vec<Dim>::Zero());
+    for (Eigen::Index c = 0; c < count; ++c) {
+      problem.w.segment<Dim>(Dim * c) = frame_of<Dim>(number(c)).transpose() * slip(world, number(c), u, w);
+      problem.w[Dim * c] = opening(number(c), u) - number(c).least;
+    }
+    const bool solved = solve_cone(problem, impulse);
+    for (Eigen::Index c = 0; c < count; ++c) {
+      // Rounding, and steps that were halved, may leave a pull.
+      if (impulse[Dim * c] < 0.0) impulse.segment<Dim>(Dim * c).setZero();
+      const Vec<Dim> found = frame_of<Dim>(number(c)) * impulse.segment<Dim>(Dim * c);
+      exchange(world, u, w, response, number(c), found);
+    }
+    return solved;
+  }
+
+  Contact& number(Eigen::Index c) { return contacts_[static_cast<std::size_t>(c)]; }
+
+  /// Puts another impulse in the place of the contact's.
+  template <class Response>
+  static void exchange(const World<Dim>& world, VectorColumn<Dim>& u, VectorColumn<kSpinAxes<Dim>>& w,
+                       const Response& response, Contact& contact, const Vec<Dim>& impulse) {
+    const Vec<Dim> change = impulse - (contact.push * contact.normal + contact.drag);
+    contact.push = contact.normal.dot(impulse);
+    contact.drag = impulse - contact.push * contact.normal;
+    apply(world, u, w, response, contact, change);
   }
 
   static Vec<Dim> surface(const World<Dim>& world, const Contact& contact, std::uint32_t ball, double side,

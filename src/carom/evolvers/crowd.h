@@ -63,17 +63,17 @@ class Crowd {
     bool solved = false;
     for (int round = 0; round < kMostRounds; ++round) {
       if (add_contacts()) {
-        solve(kSweepsInARound);
+        guess();
         solved = false;
       } else if (!solved) {
-        solve(Solver::kUntilSolved);
+        solve();
         look_again_where_it_leads_farther();
         solved = true;
       } else {
         break;
       }
     }
-    if (!solved) solve(Solver::kUntilSolved);
+    if (!solved) solve();
     for (const Kept& contact : solver_.contacts()) {
       const Bearing bearing = {side_of(contact) * impulse_of(contact), time_s};
       bearing_[contact_key(contact.a, contact.b, contact.wall)] = bearing;
@@ -123,10 +123,20 @@ class Crowd {
     for (std::size_t next = 0; next < cluster_.members().size(); ++next) enter(cluster_.members()[next]);
   }
 
-  void solve(int sweeps) {
+  static auto response_in(const World<Dim>& world) {
+    return [&world](std::uint32_t ball) { return world.inverse_mass[ball]; };
+  }
+
+  void guess() {
     World<Dim>& world = flights_.world();
-    const auto response = [&world](std::uint32_t ball) { return world.inverse_mass[ball]; };
-    solver_.solve(world, world.velocity, world.spin, response, cluster_.rule().crowd_tolerance(), sweeps);
+    solver_.guess(world, world.velocity, world.spin, response_in(world), cluster_.rule().crowd_tolerance(),
+                  kSweepsInARound);
+  }
+
+  void solve() {
+    World<Dim>& world = flights_.world();
+    solver_.solve_openings(world, world.velocity, world.spin, response_in(world),
+                           cluster_.rule().crowd_tolerance());
   }
 
   /// Adds the contacts of members that the rest of the step would close below zero, and those that bear and

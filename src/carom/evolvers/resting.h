@@ -163,7 +163,7 @@ class Resting {
       impact = impact || Solver::opening(contact, world.velocity) < -rule().slow() - rule().rounding();
     }
     if (impact) ++flights_.account().tally.impacts;
-    solver_.solve(world, world.velocity, world.spin, response, rule().tolerance(), Solver::kUntilSolved);
+    solver_.solve(world, world.velocity, world.spin, response, rule().tolerance());
     for (const Kept& contact : solver_.contacts()) {
       book(contact, contact.push * contact.normal + contact.drag);
     }
@@ -187,7 +187,7 @@ class Resting {
     }
     solver_.start(world(), flights_.accelerations(), flights_.spin_accelerations(), response);
     if (!solver_.solve(world(), flights_.accelerations(), flights_.spin_accelerations(), response,
-                       rule().tolerance() / flights_.step_s(), Solver::kUntilSolved)) {
+                       rule().tolerance() / flights_.step_s())) {
       return false;
     }
     for (const Kept& contact : solver_.contacts()) {
