@@ -2,6 +2,7 @@
 
 #include <box2d/box2d.h>
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "reference/common/account.h"
@@ -43,7 +44,11 @@ class ContactListener final : public b2ContactListener {
     b2Body* b = contact->GetFixtureB()->GetBody();
     const double speed = impulse->normalImpulses[0] * (inverse_mass(*a) + inverse_mass(*b));
     account_.contact(body_number(a), body_number(b), speed / scale_);
-    if (is_external(contact)) account_.external(push_on_ball(contact, *impulse));
+    if (!is_external(contact)) return;
+    account_.external(push_on_ball(contact, *impulse));
+    if (account_.is_wall(std::max(body_number(a), body_number(b)))) {
+      account_.wall(impulse->normalImpulses[0] / scale_);
+    }
   }
 
   reference::Account& account() { return account_; }

@@ -3,6 +3,7 @@
 #include <btBulletDynamicsCommon.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -237,8 +238,10 @@ inline void BulletSimulation::account_for(const btPersistentManifold& manifold) 
                        metres(ball_is_a ? point.getPositionWorldOnA() : point.getPositionWorldOnB())});
   }
   const double speed = normal_impulse * (inverse_mass(a) + inverse_mass(b)) / setup_.length_scale;
-  account_.contact(static_cast<std::uint32_t>(a.getUserIndex()), static_cast<std::uint32_t>(b.getUserIndex()),
-                   speed);
+  const auto number_a = static_cast<std::uint32_t>(a.getUserIndex());
+  const auto number_b = static_cast<std::uint32_t>(b.getUserIndex());
+  account_.contact(number_a, number_b, speed);
+  if (account_.is_wall(std::max(number_a, number_b))) account_.wall(normal_impulse / setup_.length_scale);
 }
 
 inline Settings BulletSimulation::settings() const {

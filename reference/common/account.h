@@ -24,13 +24,14 @@ struct Push {
 class Account {
  public:
   Account(const Scenario& scene, double epsilon)
-      : gravity_mps2_(scene.effects.gravity.value_or(Vec3::Zero()).norm()),
+      : balls_(scene.balls.size()),
+        gravity_mps2_(scene.effects.gravity.value_or(Vec3::Zero()).norm()),
         rounding_mps_(kRoundings * epsilon * expected_top_speed_mps(scene)) {}
 
   /// Opens a step of this length.
   void begin_step(double step_s) { resting_mps_ = kRestingSteps * gravity_mps2_ * step_s; }
 
-  /// Two bodies, by numbers of the adapter's own, pushed each other apart in this step.
+  /// Two bodies pushed each other apart in this step: by number, the balls first and then the walls.
   /// @param speed_change_mps  of their approach: the normal impulse over the pair's reduced mass
   void contact(std::uint32_t a, std::uint32_t b, double speed_change_mps) {
     if (speed_change_mps <= rounding_mps_) return;
@@ -38,6 +39,9 @@ class Account {
     pushing_.push_back(pair);
     if (speed_change_mps > rounding_mps_ + resting_mps_) hitting_.push_back(pair);
   }
+
+  /// A wall pushed a ball along its normal, N s, as part of what external() is told.
+  void wall(double push_Ns) { tally_.wall_push_Ns += push_Ns; }
 
   /// A wall or an immovable ball pushed a movable ball.
   void external(const Push& push) {
@@ -50,7 +54,9 @@ class Account {
     sort_unique(pushing_);
     sort_unique(hitting_);
     for (const std::uint64_t pair : hitting_) {
-      if (!std::binary_search(pushed_before_.begin(), pushed_before_.end(), pair)) ++tally_.impacts;
+      if (std::binary_search(pushed_before_.begin(), pushed_before_.end(), pair)) continue;
+      ++tally_.impacts;
+      if (is_wall(static_cast<std::uint32_t>(pair))) ++tally_.wall_impacts;
     }
     std::swap(pushing_, pushed_before_);
     pushing_.clear();
@@ -58,6 +64,7 @@ class Account {
   }
 
   const Tally& tally() const { return tally_; }
+  bool is_wall(std::uint32_t body) const { return body >= balls_; }
 
  private:
   static void sort_unique(std::vector<std::uint64_t>& pairs) {
@@ -72,13 +79,14 @@ class Account {
   // turns it round, 2 g h, and the ball is back at most one step later with what two steps add, 2 · 2 g h.
   static constexpr double kRestingSteps = 4.0;
 
+  std::size_t balls_;
   double gravity_mps2_;
   double rounding_mps_;
   double resting_mps_ = 0.0;                  // what a push against gravity can change in a step
   std::vector<std::uint64_t> pushing_;        // pairs of this step
   std::vector<std::uint64_t> hitting_;        // those of them that push harder than gravity
   std::vector<std::uint64_t> pushed_before_;  // pairs of the step before, sorted
-  Tally tally_;
+  Tally tally_ = {.walls_known = true};
 };
 
 }  // namespace carom::reference

@@ -11,13 +11,19 @@ namespace carom {
 /// The account of a simulation: impacts, and what walls and immovable balls push, about the origin.
 template <int Dim>
 struct Account {
-  Tally tally;
+  Tally tally = {.walls_known = true};
 
   /// An impulse on a movable ball, N s, that acts at `place`.
   void book(const Vec<Dim>& place, const Vec<Dim>& impulse) {
     const Vec3 wide = widened<Dim>(impulse);
     tally.external_impulse += wide;
     tally.external_angular_impulse += widened<Dim>(place).cross(wide);
+  }
+
+  /// An impulse of a wall or slab with this normal, which points at the ball.
+  void book_wall(const Vec<Dim>& place, const Vec<Dim>& normal, const Vec<Dim>& impulse) {
+    tally.wall_push_Ns += normal.dot(impulse);
+    book(place, impulse);
   }
 
   /// An impulse on ball b and its opposite on ball a, at a contact with this normal from a to b: what an
@@ -33,7 +39,7 @@ struct Account {
     for (const ClosedContact<Dim>& contact : contacts) {
       const Vec<Dim> impulse = contact.impulse * contact.normal;
       if (contact.wall) {
-        book(world.position[contact.a], impulse);
+        book_wall(world.position[contact.a], contact.normal, impulse);
       } else {
         book_pair(world, contact.a, contact.b, contact.normal, impulse);
       }

@@ -31,6 +31,9 @@ struct BallState {
 /// accounted for: an engine adds up the impulses that it exchanged with them.
 struct Tally {
   std::int64_t impacts = 0;                      ///< ball on ball and ball on wall, approaching ones only
+  std::int64_t wall_impacts = 0;                 ///< those of them on walls and slabs, one ball at a time
+  double wall_push_Ns = 0.0;                     ///< N s, Σ J·n of what walls and slabs pushed at impacts
+  bool walls_known = false;                      ///< whether the engine keeps these two
   Vec3 external_impulse = Vec3::Zero();          ///< N s, from walls and immovable balls onto movable balls
   Vec3 external_angular_impulse = Vec3::Zero();  ///< N m s, Σ x_contact × J about the origin
   bool external_known = true;                    ///< false where the engine cannot tell these impulses
@@ -121,7 +124,7 @@ std::string unsupported_reason(const Engine& engine, const Scenario& scenario, s
 
 /// The symbol by which a loadable engine module hands out its engine (see modules.h). Its number goes up with
 /// every change of this interface, so that a module of an older build is refused and does not crash.
-#define CAROM_ENGINE_SYMBOL carom_engine_3
+#define CAROM_ENGINE_SYMBOL carom_engine_4
 using EngineFactory = Engine* (*)();
 
 }  // namespace carom

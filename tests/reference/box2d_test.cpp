@@ -189,6 +189,9 @@ TEST(Box2d, Balls_PassThroughEachOther_WithoutCollisions) {
   scene.balls = {ball(1.0, 0.5, Vec3(1, 2, 0), Vec3(1, 0, 0)), ball(1.0, 0.5, Vec3(3, 2, 0), Vec3(-1, 0, 0))};
   const Probe run = after(box2d(), scene);
   EXPECT_EQ(run.tally().impacts, 2);  // each met the opposite wall
+  EXPECT_TRUE(run.tally().walls_known);
+  EXPECT_EQ(run.tally().wall_impacts, 2);
+  EXPECT_NEAR(run.tally().wall_push_Ns, 4.0, 4.0 * rounding());
   EXPECT_NEAR(run[0].velocity.x(), -1.0, rounding());
 }
 

@@ -313,7 +313,10 @@ class EventEvolver final : public Simulation {
     }
     if (v_n < 0.0) {
       ++tally_.impacts;
-      book(at.x - flights_.radius(ball) * normal, flights_.template bounce<Law>(ball, normal, surface));
+      ++tally_.wall_impacts;
+      const Vec<Dim> impulse = flights_.template bounce<Law>(ball, normal, surface);
+      tally_.wall_push_Ns += normal.dot(impulse);
+      book(at.x - flights_.radius(ball) * normal, impulse);
     }
     plan_flight(ball);
   }
@@ -386,7 +389,7 @@ class EventEvolver final : public Simulation {
   Contact wall_surface_;
   std::vector<std::uint8_t> rapid_;  ///< rapid impacts in a row, of each ball; empty where all are elastic
   double step_s_;
-  Tally tally_;
+  Tally tally_ = {.walls_known = true};
 
   // Times count from the last rebase(); what advance() asks for, in windows and a remainder.
   double window_s_;

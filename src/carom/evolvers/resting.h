@@ -171,7 +171,9 @@ class Resting {
 
   void book(const Kept& contact, const Vec<Dim>& impulse) {
     const std::optional<double> sign = external(contact);
-    if (sign) flights_.account().book(world().position[contact.a] + arm_of(contact), *sign * impulse);
+    if (!sign) return;
+    if (contact.wall) flights_.account().tally.wall_push_Ns += contact.normal.dot(impulse);
+    flights_.account().book(world().position[contact.a] + arm_of(contact), *sign * impulse);
   }
 
   /// Statics for the rest of the step, or until a slip ends. Returns false where there is none.

@@ -173,7 +173,9 @@ class StepEvolver final : public Simulation {
     }
     const Place impulse =
         Law::template on_wall<kDim>(world_, touch.a, plane.normal, rebounding(wall_surface_, v_n));
-    account_.book(world_.position[touch.a] - world_.radius[touch.a] * plane.normal, impulse);
+    if (is_impact(v_n, sweep)) ++account_.tally.wall_impacts;
+    account_.book_wall(world_.position[touch.a] - world_.radius[touch.a] * plane.normal, plane.normal,
+                       impulse);
     return true;
   }
 
@@ -184,8 +186,10 @@ class StepEvolver final : public Simulation {
   }
 
   void count(double v_n, int sweep) {
-    if (sweep == 0 && -v_n > field_speed_) ++account_.tally.impacts;
+    if (is_impact(v_n, sweep)) ++account_.tally.impacts;
   }
+
+  bool is_impact(double v_n, int sweep) const { return sweep == 0 && -v_n > field_speed_; }
 
   // --- contacts that hang together, under a law for several at once
 

@@ -278,8 +278,10 @@ class ToiEvolver final : public Simulation {
       resolve_touching(meeting);
     } else if (v_n < 0.0) {
       ++flights_.account().tally.impacts;
+      ++flights_.account().tally.wall_impacts;
       const Place impulse = Law::template on_wall<kDim>(flights_.world(), ball, plane.normal, wall_surface_);
-      flights_.account().book(world().position[ball] - world().radius[ball] * plane.normal, impulse);
+      flights_.account().book_wall(world().position[ball] - world().radius[ball] * plane.normal, plane.normal,
+                                   impulse);
       begin_flights({ball});
     }
   }
