@@ -12,6 +12,7 @@
 #include "comparison/metrics/positions.h"
 #include "comparison/metrics/yardstick.h"
 #include "comparison/predictability.h"
+#include "comparison/statistics/statistics.h"
 
 namespace carom {
 
@@ -30,6 +31,12 @@ void measure(const Yardstick& yardstick, double tolerance_m, RunComparison& resu
   if (yardstick.truth().known()) {
     result.judgement = judge(yardstick.scene(), yardstick.truth(), tolerance_m, result);
   }
+}
+
+void measure_statistics(const std::optional<Gas>& gas, RunComparison& result) {
+  if (!gas || !gas->asked.reason.empty() || result.run.status != RunStatus::ok) return;
+  result.statistics = measure_statistics(*gas, result.run.trajectory);
+  result.metrics[Metric::statistics] = largest_deviation(*result.statistics);
 }
 
 /// Of two moments; nothing is never.
@@ -81,6 +88,8 @@ SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
   result.position_tolerance_m = position_tolerance_m(*result.scene);
   result.predictability = predictability_of(*result.scene, result.truth, result.position_tolerance_m);
   result.truth.horizon_s = earlier(result.truth.horizon_s, result.predictability.horizon_s);
+  const std::optional<Gas> gas = gas_of(*result.scene);
+  if (gas) result.statistics = gas->asked;
   const Yardstick yardstick(*result.scene, result.truth);
   for (Run& run : runs) {
     RunComparison& each = result.runs.emplace_back();
@@ -89,6 +98,7 @@ SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
     measure(yardstick, result.position_tolerance_m, each);
     each.symmetries = std::move(symmetries[result.runs.size() - 1]);
     each.metrics[Metric::symmetry] = each.symmetries.worst_radii();
+    measure_statistics(gas, each);
     hold_gates(result.scene->gate, each);
   }
   for (std::size_t a = 0; a < result.runs.size(); ++a) {

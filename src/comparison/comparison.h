@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "comparison/statistics/statistic.h"
 #include "comparison/symmetry.h"
 #include "scenario/metric.h"
 #include "scenario/scenario.h"
@@ -74,6 +75,7 @@ struct RunComparison {
   Verdict verdict = Verdict::shown;
   RunSymmetries symmetries;  ///< what the scene's [symmetry] came to
   RunSeries series;
+  std::optional<RunStatistics> statistics;  ///< nothing where none is asked
 
   /// Whether this run makes the check fail.
   bool violates() const {
@@ -102,6 +104,7 @@ struct SceneComparison {
   double position_tolerance_m = 0.0;  ///< beyond it two trajectories count as diverged
   std::vector<RunComparison> runs;
   std::vector<PairComparison> pairs;
+  std::optional<SceneStatistics> statistics;  ///< nothing where the balls are too few to be a gas
 };
 
 /// The plain word for each state, as it stands in results.

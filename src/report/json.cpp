@@ -94,6 +94,34 @@ Json gates(const RunComparison& result) {
   return json;
 }
 
+Json not_asked(const std::vector<NotAsked>& left_out) {
+  Json json = Json::object();
+  for (const NotAsked& each : left_out) json[std::string(name_of(each.kind))] = each.reason;
+  return json;
+}
+
+Json statistics(const std::optional<SceneStatistics>& asked) {
+  if (!asked) return nullptr;
+  return {{"reason", asked->reason},
+          {"warm_up", asked->warm_up_s},
+          {"collisions_per_ball", asked->collisions_per_ball},
+          {"temperature", asked->temperature_J},
+          {"not_asked", not_asked(asked->not_asked)}};
+}
+
+Json statistics(const std::optional<RunStatistics>& measured) {
+  if (!measured) return nullptr;
+  Json json = Json::object();
+  for (const Statistic& each : measured->all) {
+    json[std::string(name_of(each.kind))] = {
+        {"value", number_or_null(each.value)},         {"expected", number_or_null(each.expected)},
+        {"allowance", number_or_null(each.allowance)}, {"deviations", number_or_null(each.deviations)},
+        {"as_expected", each.as_expected()},           {"detail", each.detail}};
+  }
+  json["not_asked"] = not_asked(measured->not_asked);
+  return json;
+}
+
 Json final_states(const Scenario& scene, const Trajectory& trajectory, bool all_balls) {
   Json json = Json::array();
   const auto balls = trajectory.frame(trajectory.frames() - 1);
@@ -135,6 +163,7 @@ Json run_json(const Scenario& scene, const RunComparison& result, bool all_balls
       {"accuracy", judgement(result.judgement)},
       {"first_divergence", divergence(result.first_divergence)},
       {"symmetries", symmetries(result)},
+      {"statistics", statistics(result.statistics)},
       {"gates", gates(result)},
       {"verdict", name_of(result.verdict)},
       {"final", ok ? final_states(scene, run.trajectory, all_balls) : Json::array()}};
@@ -165,6 +194,7 @@ Json scene_json(const SceneComparison& comparison, bool all_balls) {
                {"notes", scene.notes}};
   for (const Feature feature : required_features(scene)) json["effects"].push_back(name_of(feature));
   json["truth"] = truth_json(comparison);
+  json["statistics"] = statistics(comparison.statistics);
   json["runs"] = Json::array();
   for (const RunComparison& run : comparison.runs) json["runs"].push_back(run_json(scene, run, all_balls));
   json["pairs"] = Json::array();

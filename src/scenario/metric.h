@@ -19,11 +19,12 @@ enum class Metric {
   penetration,       ///< max overlap / smaller radius
   escaped,           ///< balls whose centre was behind a wall
   symmetry,          ///< max over [symmetry] checks of the distance from the twin / smallest radius
+  statistics,        ///< the largest deviation of a gas from what theory expects of it, in allowances
 };
 
-inline constexpr std::array<std::string_view, 10> kMetricNames = {
-    "energy",   "energy_gain",  "energy_loss", "momentum", "angular_momentum",
-    "position", "position_rms", "penetration", "escaped", "symmetry"};
+inline constexpr std::array<std::string_view, 11> kMetricNames = {
+    "energy",       "energy_gain", "energy_loss", "momentum", "angular_momentum", "position",
+    "position_rms", "penetration", "escaped",     "symmetry", "statistics"};
 
 constexpr std::string_view name_of(Metric metric) {
   return kMetricNames[static_cast<std::size_t>(metric)];

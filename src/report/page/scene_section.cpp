@@ -8,6 +8,7 @@
 #include "report/page/overview.h"
 #include "report/page/paths.h"
 #include "report/page/plots.h"
+#include "report/page/statistics.h"
 #include "report/page/wording.h"
 #include "scenario/features.h"
 
@@ -234,6 +235,7 @@ void add_scene(Node parent, const SceneComparison& scene, const Legend& legend) 
   add_paths(section, scene, legend);
   add_plots(section, scene, legend);
   add_metrics(section, scene);
+  add_statistics(section, scene, legend);
   add_gates(section, scene);
   add_pairs(section, scene);
   add_settings(section, scene);
