@@ -34,7 +34,7 @@ std::string not_a_gas(const Scenario& s) {
   if (!s.effects.collisions) return "the balls pass through each other";
   if (s.effects.gravity || s.effects.drag || s.effects.magnus) return "forces act between impacts";
   if (s.effects.spin) return "the balls can spin";
-  if (!s.box || s.walls.size() != static_cast<std::size_t>(2 * s.dimension))
+  if (!s.box || s.walls.size() != 2 * static_cast<std::size_t>(s.dimension))
     return "it needs a box and no other walls";
   if (!s.slabs.empty() || !s.barriers.empty()) return "something stands in the box";
   if (!s.events.empty()) return "somebody interferes";
