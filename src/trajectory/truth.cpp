@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <exception>
 #include <nlohmann/json.hpp>
 
 #include "trajectory/record.h"
@@ -96,8 +97,12 @@ void tell_impacts(const Scenario& scenario, const std::vector<std::shared_ptr<co
   if (!solution.impacts.empty() || solution.impact_count == 0 || solution.impact_count > kMostRetold) return;
   for (const auto& source : sources) {
     if (source->kind() == "closed-form" || !source->refuses(scenario).empty()) continue;
-    solution.impacts = source->solve(scenario, moments, [](auto, auto, const auto&) {}).impacts;
-    return;
+    try {
+      solution.impacts = source->solve(scenario, moments, [](auto, auto, const auto&) {}).impacts;
+      return;
+    } catch (const std::exception&) {
+      // The solution stands without them; the next source may tell.
+    }
   }
 }
 
