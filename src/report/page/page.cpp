@@ -6,6 +6,7 @@
 #include "report/page/coefficients.h"
 #include "report/page/costs.h"
 #include "report/page/html.h"
+#include "report/page/measured.h"
 #include "report/page/overview.h"
 #include "report/page/scene_section.h"
 #include "report/page/style.h"
@@ -32,7 +33,12 @@ std::filesystem::path costs_file(const std::filesystem::path& web) {
   return web.parent_path() / "measured/costs.json";
 }
 
-void add_navigation(Node body, const Results& results, bool with_costs) {
+/// Measured by tests/benchmarks/run, like the costs.
+std::filesystem::path published_file(const std::filesystem::path& web) {
+  return web.parent_path() / "measured/published.json";
+}
+
+void add_navigation(Node body, const Results& results, const std::filesystem::path& web) {
   add(body, "a", {{"class", "skip"}, {"href", "#overview"}}, "Skip to the results");
   Node bar = add(body, "nav", {{"aria-label", "Parts of this page"}});
   add(bar, "a", {{"href", "#overview"}}, "All scenes");
@@ -42,7 +48,9 @@ void add_navigation(Node body, const Results& results, bool with_costs) {
   if (has_symmetries(results)) add(bar, "a", {{"href", "#symmetry"}}, "Symmetries");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
-  if (with_costs) add(bar, "a", {{"href", "#costs"}}, "What effects cost");
+  if (std::filesystem::exists(published_file(web)))
+    add(bar, "a", {{"href", "#measured"}}, "Published values");
+  if (std::filesystem::exists(costs_file(web))) add(bar, "a", {{"href", "#costs"}}, "What effects cost");
 }
 
 }  // namespace
@@ -51,7 +59,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   const Legend legend(results.scenes);
   pugi::xml_document document;
   Node body = document.append_child("body");
-  add_navigation(body, results, std::filesystem::exists(costs_file(web)));
+  add_navigation(body, results, web);
   Node main = add(body, "main");
   add_overview(main, results, legend);
   add_accuracy(main, results, legend);
@@ -61,6 +69,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
+  add_measured(main, published_file(web));
   add_costs(main, costs_file(web));
   add_footer(body, results);
   return head(web) + markup(body) + "\n</html>\n";
