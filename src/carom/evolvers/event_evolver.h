@@ -6,30 +6,21 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <limits>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "carom/evolvers/event.h"
-#include "carom/evolvers/event_cells.h"
 #include "carom/evolvers/event_flights.h"
+#include "carom/evolvers/event_plans.h"
 #include "carom/evolvers/event_queue.h"
-#include "carom/evolvers/event_times.h"
+#include "carom/time_of_impact.h"
 
 namespace carom {
 
 /// The evolver `event`: no steps, from impact to impact.
 ///
-/// Every ball has one plan: the first impact that was seen when it was last looked at, with whom, and when it
-/// leaves its cell. A plan is made when a ball's flight begins, with all that are near; it grows when a ball
-/// crosses into new neighbours; and it is made again when its time comes and the other one's flight has
-/// changed meanwhile. Of any two balls that are near, the one whose flight began last, or that came near, has
-/// seen the other on its present flight: so the earliest impact of all is always the earliest of some plan.
-/// Source of the scheme: B. D. Lubachevsky, "How to simulate billiards and similar systems", J. Comput. Phys.
-/// 94, 255 (1991). Deviation: plans are not withdrawn when a partner is lost, but looked at when they come
-/// up.
+/// What comes next for whom stands in event_plans.h.
 ///
 /// The time of an impact is computed from where both flights began, whoever looks and whenever, and flights
 /// end only by impacts: so trajectories are the same bits however advance() is cut, whatever the cells, and
@@ -50,20 +41,12 @@ class EventEvolver final : public Simulation {
  public:
   explicit EventEvolver(const Scenario& scene)
       : flights_(scene),
-        times_(flights_, scene),
+        plans_(scene, flights_),
         surface_(scene.ball_contact),
         wall_surface_(scene.wall_contact),
         step_s_(scene.step_s),
-        window_s_(std::exp2(std::ceil(std::log2(kStepsInWindow * scene.step_s)))),
-        plans_(scene.balls.size()),
-        queue_(scene.balls.size()) {
-    for (const Wall& wall : scene.walls) walls_.push_back({flattened<Dim>(wall.normal), wall.offset});
+        window_s_(std::exp2(std::ceil(std::log2(kStepsInWindow * scene.step_s)))) {
     if (std::min(surface_.restitution, wall_surface_.restitution) < 1.0) rapid_.assign(flights_.size(), 0);
-    if (scene.effects.collisions) {
-      const World<Dim> world(scene.balls);
-      cells_.emplace(world.position, world.radius);
-    }
-    for (std::uint32_t ball = 0; ball < flights_.size(); ++ball) plan_flight(ball);
   }
 
   void advance(double step_s, std::int64_t steps) override {
@@ -72,10 +55,10 @@ class EventEvolver final : public Simulation {
     offset_s_ -= windows * window_s_;
     windows_ += windows;
     while (true) {
-      const std::uint32_t ball = queue_.first();
-      if (ball == EventQueue::kNobody || queue_.key(ball).time > now()) return;
-      if (queue_.key(ball).time >= window_s_) {
-        rebase(queue_.key(ball).time);
+      const std::uint32_t ball = plans_.first();
+      if (ball == EventQueue::kNobody || plans_.time_s(ball) > now()) return;
+      if (plans_.time_s(ball) >= window_s_) {
+        rebase(plans_.time_s(ball));
       } else {
         carry_out(ball);
       }
@@ -95,10 +78,7 @@ class EventEvolver final : public Simulation {
   Settings settings() const override {
     Settings settings = {
         {"evolver", "event"}, {"law", std::string(Law::kName)}, {"clock_window_s", window_s_}};
-    if (cells_) {
-      settings["cell_width_m"] = cells_->width_m();
-      settings["balls_outside_cells"] = static_cast<double>(cells_->giants());
-    }
+    plans_.add_settings(settings);
     if (!rapid_.empty()) {
       settings["elastic_below_s"] = kRapidShare * step_s_;
       settings["elastic_after_rapid_impacts"] = static_cast<double>(kMostRapid);
@@ -108,17 +88,6 @@ class EventEvolver final : public Simulation {
   }
 
  private:
-  /// What comes next for a ball. A partner from the number of balls on is a wall.
-  struct Plan {
-    double impact_time = kNever;    ///< s
-    double crossing_time = kNever;  ///< s, when the ball leaves its cell
-    std::uint32_t partner = 0;
-    std::uint32_t partner_flight = 0;  ///< of the partner, when the plan was made
-    std::uint32_t flight = 0;          ///< counts the ball's own
-    std::int16_t crossing_axis = 0;
-    std::int16_t crossing_direction = 0;
-  };
-
   /// Steps after which clocks count anew, rounded up to a power of two of seconds, so that no time loses a
   /// bit by it: often enough for clocks to keep their digits, and too seldom to be felt.
   static constexpr double kStepsInWindow = 64.0;
@@ -142,26 +111,25 @@ class EventEvolver final : public Simulation {
 
   void carry_out(std::uint32_t ball) {
     guard_progress(ball);
-    const Plan& plan = plans_[ball];
+    const auto& plan = plans_.of(ball);
     if (plan.crossing_time < plan.impact_time) {
-      cross(ball);
-    } else if (is_wall(plan.partner)) {
-      hit_wall(ball, plan.partner - balls(), plan.impact_time);
-    } else if (plan.partner_flight == plans_[plan.partner].flight) {
+      plans_.cross(ball);
+    } else if (plans_.is_wall(plan.partner)) {
+      hit_wall(ball, plan.partner - plans_.balls(), plan.impact_time);
+    } else if (plans_.holds(plan)) {
       hit_ball(std::min(ball, plan.partner), std::max(ball, plan.partner), plan.impact_time);
     } else {
-      plan_impact(ball);
-      enqueue(ball);
+      plans_.plan_again(ball);
     }
   }
 
   void guard_progress(std::uint32_t ball) {
-    const double time = queue_.key(ball).time;
+    const double time = plans_.time_s(ball);
     if (time > at_once_since_ + kAtOnceShare * step_s_) {
       at_once_since_ = time;
       at_once_ = 0;
     }
-    if (++at_once_ <= kMostAtOnce + kMostAtOnceEach * static_cast<std::int64_t>(balls())) return;
+    if (++at_once_ <= kMostAtOnce + kMostAtOnceEach * static_cast<std::int64_t>(plans_.balls())) return;
     throw std::runtime_error(
         fmt::format("time stands still after {} events at once, the last of ball {}: balls that lie against "
                     "each other are beyond the event-driven evolver",
@@ -173,105 +141,12 @@ class EventEvolver final : public Simulation {
     const double windows = std::floor(time_s / window_s_);
     const double shift = windows * window_s_;
     flights_.rebase(shift);
-    for (Plan& plan : plans_) {
-      plan.impact_time -= shift;
-      plan.crossing_time -= shift;
-    }
-    queue_.shift(shift);
+    plans_.rebase(shift);
     windows_ -= windows;
     at_once_since_ -= shift;
   }
 
-  // --- plans
-
-  std::uint32_t balls() const { return static_cast<std::uint32_t>(plans_.size()); }
-  bool is_wall(std::uint32_t partner) const { return partner >= balls(); }
-
-  /// Among events of one time: by first ball, then balls before walls, then by second ball or wall.
-  static std::uint64_t rank(std::uint32_t ball, std::uint32_t partner) {
-    return (std::uint64_t{std::min(ball, partner)} << 32U) | std::max(ball, partner);
-  }
-
-  /// An immovable ball that stands still has none: whoever comes sees it.
-  void plan_flight(std::uint32_t ball) {
-    if (!flights_.movable(ball) && flights_.velocity(ball).isZero(0.0)) return;
-    plan_impact(ball);
-    plan_crossing(ball, flights_.clock(ball));
-    enqueue(ball);
-  }
-
-  void plan_impact(std::uint32_t ball) {
-    plans_[ball].impact_time = kNever;
-    if (flights_.movable(ball)) {
-      for (std::uint32_t wall = 0; wall < walls_.size(); ++wall) {
-        if (wall != flights_.bearer(ball)) consider(ball, balls() + wall, times_.to_wall(ball, walls_[wall]));
-      }
-    }
-    if (!cells_) return;
-    cells_->find_near(ball, near_);
-    consider_near(ball);
-  }
-
-  /// First all are sieved without a branch, as half of them part and most of the others miss, at random.
-  void consider_near(std::uint32_t ball) {
-    std::size_t left = 0;
-    for (const std::uint32_t other : near_) {
-      near_[left] = other;
-      left += times_.might_touch(ball, other) ? 1 : 0;
-    }
-    for (std::size_t k = 0; k < left; ++k) {
-      if (flights_.movable(ball) || flights_.movable(near_[k])) {
-        consider(ball, near_[k], times_.to_touch(ball, near_[k]));
-      }
-    }
-  }
-
-  void consider(std::uint32_t ball, std::uint32_t partner, double time) {
-    Plan& plan = plans_[ball];
-    if (time > plan.impact_time || time == kNever) return;
-    if (time == plan.impact_time && rank(ball, plan.partner) < rank(ball, partner)) return;
-    plan.impact_time = time;
-    plan.partner = partner;
-    plan.partner_flight = is_wall(partner) ? 0 : plans_[partner].flight;
-  }
-
-  void plan_crossing(std::uint32_t ball, double time_s) {
-    Plan& plan = plans_[ball];
-    plan.crossing_time = kNever;
-    if (!cells_ || !cells_->holds(ball)) return;
-    for (int axis = 0; axis < Dim; ++axis) {
-      for (const int direction : {-1, 1}) {
-        const double side = cells_->lower_face(ball, axis) + (direction > 0 ? cells_->width_m() : 0.0);
-        const double time = times_.to_side(ball, axis, direction, side, time_s);
-        if (time >= plan.crossing_time) continue;
-        plan.crossing_time = time;
-        plan.crossing_axis = static_cast<std::int16_t>(axis);
-        plan.crossing_direction = static_cast<std::int16_t>(direction);
-      }
-    }
-  }
-
-  void enqueue(std::uint32_t ball) {
-    const Plan& plan = plans_[ball];
-    if (plan.crossing_time < plan.impact_time) {
-      queue_.set(ball, {plan.crossing_time, rank(ball, std::numeric_limits<std::uint32_t>::max())});
-    } else {
-      queue_.set(ball, {plan.impact_time, rank(ball, plan.partner)});
-    }
-  }
-
-  // --- what
-
-  void cross(std::uint32_t ball) {
-    const Plan& plan = plans_[ball];
-    const int axis = plan.crossing_axis;
-    const int direction = plan.crossing_direction;
-    cells_->cross(ball, axis, direction);
-    plan_crossing(ball, plan.crossing_time);
-    cells_->find_ahead(ball, axis, direction, near_);
-    consider_near(ball);
-    enqueue(ball);
-  }
+  // --- impacts
 
   void hit_ball(std::uint32_t a, std::uint32_t b, double time_s) {
     const Contact surface = surface_after(surface_, time_s, {a, b});
@@ -293,13 +168,13 @@ class EventEvolver final : public Simulation {
       if (!flights_.movable(b)) book(at_a.x + flights_.radius(a) * normal, -impulse);
     }
     for (const std::uint32_t ball : {a, b}) {
-      if (flights_.movable(ball)) plan_flight(ball);
+      if (flights_.movable(ball)) plans_.plan_flight(ball);
     }
   }
 
   void hit_wall(std::uint32_t ball, std::uint32_t wall, double time_s) {
     const Contact surface = surface_after(wall_surface_, time_s, {ball});
-    const Vec<Dim>& normal = walls_[wall].normal;
+    const Vec<Dim>& normal = plans_.wall(wall).normal;
     const std::uint32_t bearer = flights_.bearer(ball);
     const Motion<Dim> at = flights_.motion(ball, time_s);
     const double v_n = normal.dot(at.v);
@@ -307,7 +182,7 @@ class EventEvolver final : public Simulation {
     if constexpr (kGravity) {
       if (ends_in_rest(v_n, normal.dot(at.a), at.x, flights_.radius(ball))) {
         lay_down(ball, wall, bearer);
-        plan_flight(ball);
+        plans_.plan_flight(ball);
         return;
       }
     }
@@ -318,7 +193,7 @@ class EventEvolver final : public Simulation {
       tally_.wall_push_Ns += normal.dot(impulse);
       book(at.x - flights_.radius(ball) * normal, impulse);
     }
-    plan_flight(ball);
+    plans_.plan_flight(ball);
   }
 
   /// An immovable ball flies on as it did.
@@ -326,7 +201,7 @@ class EventEvolver final : public Simulation {
     if (!flights_.movable(ball)) return;
     if constexpr (kGravity) flights_.add_push(ball, time_s, tally_);
     flights_.begin_flight(ball, time_s);
-    ++plans_[ball].flight;
+    plans_.end_flight(ball);
   }
 
   /// Two balls at one point have no normal; any fixed one keeps the laws.
@@ -370,7 +245,7 @@ class EventEvolver final : public Simulation {
           "ball {} comes to lie on a wall with friction: the event-driven evolver lets balls only slide",
           ball));
     }
-    flights_.lay_on(ball, wall, walls_[wall].normal);
+    flights_.lay_on(ball, wall, plans_.wall(wall).normal);
   }
 
   // --- the account of walls and immovable balls
@@ -382,9 +257,7 @@ class EventEvolver final : public Simulation {
   }
 
   EventFlights<Dim, kGravity> flights_;
-  EventTimes<Dim, kGravity> times_;
-  std::optional<EventCells<Dim>> cells_;  ///< none where balls pass through each other
-  std::vector<EventWall<Dim>> walls_;
+  EventPlans<Dim, kGravity> plans_;
   Contact surface_;
   Contact wall_surface_;
   std::vector<std::uint8_t> rapid_;  ///< rapid impacts in a row, of each ball; empty where all are elastic
@@ -395,10 +268,6 @@ class EventEvolver final : public Simulation {
   double window_s_;
   double windows_ = 0.0;
   double offset_s_ = 0.0;
-  std::vector<Plan> plans_;
-  std::vector<std::uint32_t> near_;  ///< balls that are looked at
-  EventQueue queue_;
-
   double at_once_since_ = -kNever;
   std::int64_t at_once_ = 0;
 };
