@@ -12,6 +12,7 @@
 #include "core/files.h"
 #include "scenario/generate.h"
 #include "scenario/read.h"
+#include "scenario/room.h"
 
 namespace carom {
 
@@ -204,6 +205,9 @@ void read_balls(Reader& root, Scenario& scene, const SceneOptions& options) {
     }
   }
   if (scene.balls.empty()) root.fail("", "no ball: a scene needs a [[ball]] or [[balls]] table");
+  if (const auto contradiction = lack_of_room(scene)) {
+    root.fail("", *contradiction + ", allowed: at least its diameter");
+  }
 }
 
 Event read_event(Reader& reader, const Scenario& scene) {
