@@ -3,9 +3,11 @@
 #include <box2d/box2d.h>
 
 #include <algorithm>
+#include <optional>
 #include <unordered_map>
 
 #include "reference/common/account.h"
+#include "reference/common/energy.h"
 
 namespace carom::box2d {
 
@@ -19,7 +21,7 @@ inline std::uint32_t body_number(b2Body* body) {
 class ContactListener final : public b2ContactListener {
  public:
   ContactListener(const Scenario& scene, double length_scale)
-      : scene_(scene), scale_(length_scale), account_(scene, b2_epsilon) {}
+      : scene_(scene), scale_(length_scale), account_(scene, b2_epsilon), energy_(scene) {}
 
   void BeginContact(b2Contact* contact) override {
     const bool wall =
@@ -33,10 +35,11 @@ class ContactListener final : public b2ContactListener {
 
   // Normal and point as the solver is about to use them: by PostSolve the bodies have moved on.
   void PreSolve(b2Contact* contact, const b2Manifold* /*before*/) override {
-    if (!is_external(contact)) return;
     b2WorldManifold manifold;
     contact->GetWorldManifold(&manifold);
-    touches_[contact] = {manifold.normal, manifold.points[0]};
+    const b2Vec2& point = manifold.points[0];
+    touches_[contact] = {manifold.normal, point, point - contact->GetFixtureA()->GetBody()->GetWorldCenter(),
+                         point - contact->GetFixtureB()->GetBody()->GetWorldCenter()};
   }
 
   void PostSolve(b2Contact* contact, const b2ContactImpulse* impulse) override {
@@ -44,6 +47,7 @@ class ContactListener final : public b2ContactListener {
     b2Body* b = contact->GetFixtureB()->GetBody();
     const double speed = impulse->normalImpulses[0] * (inverse_mass(*a) + inverse_mass(*b));
     account_.contact(body_number(a), body_number(b), speed / scale_);
+    energy_.add(solved(contact, *impulse));
     if (!is_external(contact)) return;
     account_.external(push_on_ball(contact, *impulse));
     if (account_.is_wall(std::max(body_number(a), body_number(b)))) {
@@ -53,11 +57,15 @@ class ContactListener final : public b2ContactListener {
 
   reference::Account& account() { return account_; }
   const reference::Account& account() const { return account_; }
+  reference::EnergyBook& energy() { return energy_; }
+  const reference::EnergyBook& energy() const { return energy_; }
 
  private:
   struct Touch {
     b2Vec2 normal;  // from body A to body B
     b2Vec2 point;
+    b2Vec2 arm_a;  // from the centre of body A to the point
+    b2Vec2 arm_b;
   };
 
   static double inverse_mass(const b2Body& body) {
@@ -80,10 +88,28 @@ class ContactListener final : public b2ContactListener {
             Vec3(touch.point.x, touch.point.y, 0.0) / scale_};
   }
 
+  /// The contact as it was solved. Box2D's impulses act on B along a normal from A to B.
+  reference::SolvedContact solved(b2Contact* contact, const b2ContactImpulse& impulse) const {
+    const Touch& touch = touches_.at(contact);
+    const b2Vec2 tangent = b2Cross(touch.normal, 1.0f);
+    reference::SolvedContact solved;
+    solved.a = body_at(contact->GetFixtureA()->GetBody(), touch.arm_a);
+    solved.b = body_at(contact->GetFixtureB()->GetBody(), touch.arm_b);
+    solved.push = impulse.normalImpulses[0] / scale_ * Vec3(touch.normal.x, touch.normal.y, 0.0);
+    solved.drag = impulse.tangentImpulses[0] / scale_ * Vec3(tangent.x, tangent.y, 0.0);
+    return solved;
+  }
+
+  std::optional<reference::SolvedContact::Body> body_at(b2Body* body, const b2Vec2& arm) const {
+    if (body->GetType() != b2_dynamicBody) return std::nullopt;
+    return reference::SolvedContact::Body{body_number(body), Vec3(arm.x, arm.y, 0.0) / scale_};
+  }
+
   const Scenario& scene_;
   double scale_;
   reference::Account account_;
-  std::unordered_map<b2Contact*, Touch> touches_;  // of external contacts that touch now
+  reference::EnergyBook energy_;
+  std::unordered_map<b2Contact*, Touch> touches_;  // of contacts that touch now
 };
 
 }  // namespace carom::box2d

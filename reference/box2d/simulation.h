@@ -36,19 +36,23 @@ class Box2dSimulation final : public Simulation {
     for (std::int64_t k = 0; k < steps; ++k) {
       if (reference::needs_fluid_force(scene_.effects)) apply_fluid_forces(step_s);
       if (setup_.continuous_when_fast) choose_continuous(step_s);
+      if (listener_.energy().wants_places()) snapshot(listener_.energy().before());
       listener_.account().begin_step(step_s);
       world_.Step(static_cast<float>(step_s), setup_.velocity_iterations, setup_.position_iterations);
       listener_.account().end_step();
+      listener_.energy().close_step([this](std::size_t ball) { return state_of(ball); }, step_s);
     }
   }
 
   void snapshot(std::span<BallState> balls) const override {
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-      balls[i] = {vec3(bodies_[i]->GetWorldCenter()), vec3(bodies_[i]->GetLinearVelocity()), spin_of(i)};
-    }
+    for (std::size_t i = 0; i < balls.size(); ++i) balls[i] = state_of(i);
   }
 
-  Tally tally() const override { return listener_.account().tally(); }
+  Tally tally() const override {
+    Tally tally = listener_.account().tally();
+    tally.energy = listener_.energy().account();
+    return tally;
+  }
 
   Settings settings() const override;
 
@@ -65,6 +69,9 @@ class Box2dSimulation final : public Simulation {
   /// In Box2D's units, as a fixture wants it.
   float restitution_threshold() const {
     return static_cast<float>(setup_.velocity_threshold_mps * setup_.length_scale);
+  }
+  BallState state_of(std::size_t i) const {
+    return {vec3(bodies_[i]->GetWorldCenter()), vec3(bodies_[i]->GetLinearVelocity()), spin_of(i)};
   }
   Vec3 spin_of(std::size_t i) const { return {0.0, 0.0, bodies_[i]->GetAngularVelocity()}; }
 
@@ -109,6 +116,9 @@ inline void Box2dSimulation::add_ball(const Ball& ball) {
     data.I = static_cast<float>(ball.inertia * ball.mass * circle.m_radius * circle.m_radius);
     body->SetMassData(&data);
   }
+  // Box2D has the inertia about the centre, and none where a body does not rotate.
+  const double inertia = body->GetInertia() / (setup_.length_scale * setup_.length_scale);
+  listener_.energy().set_inverse_inertia(bodies_.size(), inertia > 0.0 ? 1.0 / inertia : 0.0);
   bodies_.push_back(body);
 }
 

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "reference/bullet/bounded_plane.h"
 #include "reference/bullet/setup.h"
 #include "reference/bullet/surfaces.h"
 #include "reference/common/account.h"
+#include "reference/common/energy.h"
 #include "reference/common/fluid.h"
 
 namespace carom::bullet {
@@ -25,7 +27,11 @@ class BulletSimulation final : public Simulation {
 
   void advance(double step_s, std::int64_t steps) override;
   void snapshot(std::span<BallState> balls) const override;
-  Tally tally() const override { return account_.tally(); }
+  Tally tally() const override {
+    Tally tally = account_.tally();
+    tally.energy = energy_.account();
+    return tally;
+  }
   Settings settings() const override;
 
  private:
@@ -51,6 +57,10 @@ class BulletSimulation final : public Simulation {
     const btVector3& spin = body.getAngularVelocity();
     return {spin.x(), spin.y(), spin.z()};
   }
+  BallState state_of(std::size_t ball) const {
+    const btRigidBody& body = *bodies_[ball];
+    return {metres(body.getCenterOfMassPosition()), metres(body.getLinearVelocity()), spin_of(body)};
+  }
   bool is_ball(const btCollisionObject& object) const {
     return object.getUserIndex() < static_cast<int>(scene_.balls.size());
   }
@@ -62,6 +72,9 @@ class BulletSimulation final : public Simulation {
     return is_movable(object) ? 1.0 / scene_.balls[static_cast<std::size_t>(object.getUserIndex())].mass
                               : 0.0;
   }
+
+  std::optional<reference::SolvedContact::Body> body_at(const btCollisionObject& object,
+                                                        const btVector3& point);
 
   void configure_solver();
   void add_ball(const Ball& ball);
@@ -77,6 +90,8 @@ class BulletSimulation final : public Simulation {
   const Scenario& scene_;
   Setup setup_;
   reference::Account account_;
+  reference::EnergyBook energy_;
+  double step_s_ = 0.0;  // of the step at hand
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
@@ -87,7 +102,7 @@ class BulletSimulation final : public Simulation {
 };
 
 inline BulletSimulation::BulletSimulation(const Scenario& scene, const Setup& setup)
-    : scene_(scene), setup_(setup), account_(scene, kEpsilon) {
+    : scene_(scene), setup_(setup), account_(scene, kEpsilon), energy_(scene) {
   use_pair_coefficients();
   configure_solver();
   world_.setGravity(units(scene.effects.gravity.value_or(Vec3::Zero())));
@@ -138,7 +153,12 @@ inline void BulletSimulation::add_ball(const Ball& ball) {
   btRigidBody& body = add_body(mass, std::make_unique<btSphereShape>(static_cast<btScalar>(radius)),
                                at(ball.position), btVector3(moment, moment, moment),
                                immovable ? kImmovable : kMovable, immovable ? others : others | kWall);
-  if (!fixed) move_freely(body, ball);
+  if (fixed) return;
+  move_freely(body, ball);
+  if (!immovable && scene_.effects.spin) {
+    energy_.set_inverse_inertia(static_cast<std::size_t>(body.getUserIndex()),
+                                1.0 / (ball.inertia * ball.mass * ball.radius * ball.radius));
+  }
 }
 
 inline void BulletSimulation::move_freely(btRigidBody& body, const Ball& ball) {
@@ -180,17 +200,17 @@ inline void BulletSimulation::advance(double step_s, std::int64_t steps) {
   for (std::int64_t k = 0; k < steps; ++k) {
     if (reference::needs_fluid_force(scene_.effects)) apply_fluid_forces(step_s);
     if (setup_.fresh_points) forget_contact_points();
+    if (energy_.wants_places()) snapshot(energy_.before());
     account_.begin_step(step_s);
+    step_s_ = step_s;
     world_.stepSimulation(static_cast<btScalar>(step_s), 0);
     account_for_step();
+    energy_.close_step([this](std::size_t ball) { return state_of(ball); }, step_s);
   }
 }
 
 inline void BulletSimulation::snapshot(std::span<BallState> balls) const {
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    const btRigidBody& body = *bodies_[i];
-    balls[i] = {metres(body.getCenterOfMassPosition()), metres(body.getLinearVelocity()), spin_of(body)};
-  }
+  for (std::size_t i = 0; i < balls.size(); ++i) balls[i] = state_of(i);
 }
 
 inline void BulletSimulation::apply_fluid_forces(double step_s) {
@@ -229,10 +249,13 @@ inline void BulletSimulation::account_for(const btPersistentManifold& manifold) 
     // The solver skips points further apart than this and leaves their old impulse in place.
     if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
     normal_impulse += point.getAppliedImpulse();
+    const btVector3 push_on_a = point.getAppliedImpulse() * point.m_normalWorldOnB;
+    const btVector3 drag_on_a = point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                                point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+    energy_.add({body_at(a, point.getPositionWorldOnA()), body_at(b, point.getPositionWorldOnB()),
+                 -metres(push_on_a), -metres(drag_on_a)});
     if (is_movable(a) && is_movable(b)) continue;
-    const btVector3 on_a = point.getAppliedImpulse() * point.m_normalWorldOnB +
-                           point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
-                           point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+    const btVector3 on_a = push_on_a + drag_on_a;
     const bool ball_is_a = is_movable(a);
     account_.external({metres(ball_is_a ? on_a : -on_a),
                        metres(ball_is_a ? point.getPositionWorldOnA() : point.getPositionWorldOnB())});
@@ -242,6 +265,16 @@ inline void BulletSimulation::account_for(const btPersistentManifold& manifold) 
   const auto number_b = static_cast<std::uint32_t>(b.getUserIndex());
   account_.contact(number_a, number_b, speed);
   if (account_.is_wall(std::max(number_a, number_b))) account_.wall(normal_impulse / setup_.length_scale);
+}
+
+// Where the point was at the beginning of the step, when the contact was found: the arm is that from the
+// centre then.
+inline std::optional<reference::SolvedContact::Body> BulletSimulation::body_at(
+    const btCollisionObject& object, const btVector3& point) {
+  if (!is_movable(object)) return std::nullopt;
+  const auto ball = static_cast<std::size_t>(object.getUserIndex());
+  const BallState state = state_of(ball);
+  return reference::SolvedContact::Body{ball, metres(point) - (state.position - step_s_ * state.velocity)};
 }
 
 inline Settings BulletSimulation::settings() const {

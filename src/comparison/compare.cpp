@@ -27,6 +27,7 @@ void measure(const Yardstick& yardstick, double tolerance_m, RunComparison& resu
   measure_angular_momentum(yardstick, conserved, result);
   measure_positions(yardstick, result);
   measure_contact(yardstick, result);
+  result.energy_split = split_energy(yardstick.scene(), result.run);
   result.first_divergence = divergence_from_truth(yardstick, conserved, result, tolerance_m);
   if (yardstick.truth().known()) {
     result.judgement = judge(yardstick.scene(), yardstick.truth(), tolerance_m, result);

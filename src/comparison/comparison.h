@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "comparison/energy_split.h"
 #include "comparison/statistics/statistic.h"
 #include "comparison/symmetry.h"
 #include "scenario/metric.h"
@@ -71,6 +72,7 @@ struct RunComparison {
   Metrics metrics;
   std::optional<Divergence> first_divergence;  ///< from the truth
   std::optional<Judgement> judgement;          ///< nothing without a truth
+  std::optional<EnergySplit> energy_split;     ///< nothing where the engine cannot tell
   std::vector<GateResult> gates;
   Verdict verdict = Verdict::shown;
   RunSymmetries symmetries;  ///< what the scene's [symmetry] came to

@@ -25,6 +25,21 @@ struct BallState {
   Vec3 spin;      ///< rad/s
 };
 
+/// What changed the energy of the movable balls since t = 0, J; above 0 gained, below lost. A push's work is
+///   W = J·(g + g')/2,                                                                                   (1)
+/// J the impulse on one of two bodies, g and g' its velocity relative to the other at the point of contact
+/// before and after: the change of their kinetic energies by an impulse. Walls, and immovable balls whether
+/// they move or not, count as at rest. It is booked by the part of the push that does it. What these leave of
+/// a run's change of energy happened in flight: by gravity and drag, by how they are integrated, and by what
+/// an engine does to velocities without a push.
+struct EnergyAccount {
+  double ball_impacts_J = 0.0;  ///< the normal impulses between movable balls
+  double wall_impacts_J = 0.0;  ///< the normal impulses of walls and immovable balls
+  double friction_J = 0.0;      ///< the tangential impulses of all of them
+  double correction_J = 0.0;    ///< what moved balls out of overlaps, by the potential energy it gave them
+  bool known = false;           ///< whether the engine keeps this account
+};
+
 /// Running totals since t = 0, in the order of the simulation's own events.
 ///
 /// Walls and immovable balls push on the movable ones, so momentum is conserved only once their push is
@@ -37,6 +52,7 @@ struct Tally {
   Vec3 external_impulse = Vec3::Zero();          ///< N s, from walls and immovable balls onto movable balls
   Vec3 external_angular_impulse = Vec3::Zero();  ///< N m s, Σ x_contact × J about the origin
   bool external_known = true;                    ///< false where the engine cannot tell these impulses
+  EnergyAccount energy = {};
 };
 
 using SettingValue = std::variant<bool, double, std::string>;

@@ -83,6 +83,15 @@ Json symmetries(const RunComparison& result) {
   return json;
 }
 
+Json energy_by_cause(const std::optional<EnergySplit>& split) {
+  if (!split) return nullptr;
+  return {{"flight", number_or_null(split->flight_J)},
+          {"ball_impacts", number_or_null(split->ball_impacts_J)},
+          {"wall_impacts", number_or_null(split->wall_impacts_J)},
+          {"friction", number_or_null(split->friction_J)},
+          {"position_correction", number_or_null(split->correction_J)}};
+}
+
 Json gates(const RunComparison& result) {
   Json json = Json::array();
   for (const GateResult& gate : result.gates) {
@@ -164,6 +173,7 @@ Json run_json(const Scenario& scene, const RunComparison& result, bool all_balls
       {"first_divergence", divergence(result.first_divergence)},
       {"symmetries", symmetries(result)},
       {"statistics", statistics(result.statistics)},
+      {"energy_by_cause", energy_by_cause(result.energy_split)},
       {"gates", gates(result)},
       {"verdict", name_of(result.verdict)},
       {"final", ok ? final_states(scene, run.trajectory, all_balls) : Json::array()}};

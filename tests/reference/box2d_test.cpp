@@ -3,6 +3,7 @@
 
 #include <variant>
 
+#include "tests/reference/energy.h"
 #include "tests/reference/support.h"
 #include "tests/reference/switches.h"
 
@@ -224,6 +225,34 @@ TEST(Box2d, UnknownSwitch_IsRefused) {
   const Scenario scene = scene_for_switches();
   EXPECT_THROW(box2d().create_switched(scene, "default", std::vector<std::string>{"warmth"}),
                std::logic_error);
+}
+
+// Each impulse is rounded in each of the iterations that move it, in each step: 480 of them, all in one
+// direction.
+TEST(Box2d, EnergyAccount_ExplainsEveryJoule_InRoughLossyGas) {
+  EXPECT_LE(unexplained_energy_of_gas(box2d(), "faithful", 2), 480.0 * epsilon(box2d()));
+}
+
+TEST(Box2d, EnergyAccount_BooksAWallImpactAtTheWall) {
+  EXPECT_LE(wall_impact_error(box2d(), 2), 16.0 * epsilon(box2d()));
+}
+
+// By default the position iterations lift a ball that starts 0.05 m deep out of the floor, all but the slop
+// of 0.005 m and with the skin of 0.01 m, against gravity and without a velocity.
+TEST(Box2d, PositionIterations_GiveEnergyUnderGravity) {
+  constexpr double kDepth_m = 0.05;
+  constexpr double kSkin_m = 0.01;
+  constexpr double kSlop_m = 0.005;
+  Scenario scene = scene_of(2, 0.01, 50);
+  scene.effects.gravity = Vec3(0, -10.0, 0);
+  scene.walls = {{Vec3::UnitY(), 0.0}};
+  scene.wall_contact.restitution = 0.0;
+  scene.balls = {ball(1.0, 0.5, Vec3(0, 0.5 - kDepth_m, 0))};
+  const double lift_m = kDepth_m + kSkin_m - kSlop_m;
+  EXPECT_NEAR(after(box2d(), scene, "default").tally().energy.correction_J, 10.0 * lift_m, 10.0 * kSlop_m);
+  // Places are rounded in every step.
+  EXPECT_LE(std::abs(after(box2d(), scene, "faithful").tally().energy.correction_J),
+            50.0 * epsilon(box2d()) * 10.0 * 0.5);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <variant>
 
+#include "tests/reference/energy.h"
 #include "tests/reference/support.h"
 #include "tests/reference/switches.h"
 
@@ -338,6 +339,16 @@ TEST_P(Bullet, DefaultErp_AddsAFifthOfTheOverlapOverTheStepToTheBounce) {
               tolerance);
   const auto cured = bullet_.create_switched(scene, "default", std::vector<std::string>{"erp2"});
   EXPECT_NEAR(states_after(*cured, scene)[0].velocity.y(), kSpeed_mps, tolerance);
+}
+
+// Each impulse is rounded in each of the iterations that move it, in each step: 480 of them, all in one
+// direction.
+TEST_P(Bullet, EnergyAccount_ExplainsEveryJoule_InRoughLossyGas) {
+  EXPECT_LE(unexplained_energy_of_gas(bullet_, "faithful", dimension_), 480.0 * epsilon(bullet_));
+}
+
+TEST_P(Bullet, EnergyAccount_BooksAWallImpactAtTheWall) {
+  EXPECT_LE(wall_impact_error(bullet_, dimension_), 16.0 * epsilon(bullet_));
 }
 
 }  // namespace

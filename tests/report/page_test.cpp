@@ -327,6 +327,18 @@ TEST(Page, DescribesEveryDrawing_InWords) {
   }
 }
 
+TEST(Page, SaysWhereTheEnergyWent_WhereAnyDid) {
+  Results results = usual_results();
+  EXPECT_THAT(page_of(results), Not(HasSubstr("Where the energy went")));
+  // Two balls of 1 kg with 1.09 m²/s² each: 1.09 J.
+  results.scenes[0].runs[0].energy_split = EnergySplit{0.0, -0.545, 0.0, 0.0, 1e-9};
+  results.scenes[0].runs[2].energy_split = EnergySplit{0.109, 0.0, 0.0, 0.0, 0.0};
+  const std::string page = page_of(results);
+  pugi::xml_document body;
+  ASSERT_NO_FATAL_FAILURE(parse_body(page, body));
+  EXPECT_THAT(text_of(body), AllOf(HasSubstr("Where the energy went"), HasSubstr("−0.5"), HasSubstr("+0.1")));
+}
+
 TEST(Page, ShowsWhatImpactsDeliver_WhereItWasMeasured) {
   Results results = usual_results();
   EXPECT_THAT(page_of(results), Not(HasSubstr("id=\"coefficients\"")));

@@ -142,6 +142,17 @@ TEST(Csv, HasARowForEachFrameAndBall_WithAllDigits) {
   EXPECT_THAT(csv, HasSubstr("\n0.5,0,0.30000000000000004,0,0,0.1,0,0,0,0,0\n"));
 }
 
+TEST(Json, EnergyByCause_IsNull_WhereTheEngineCannotTell) {
+  Results results = four_verdicts();
+  results.scenes[0].runs[0].energy_split = EnergySplit{0.5, -1.0, -2.0, -3.0, 4.0};
+  results.scenes[0].runs[1].energy_split.reset();
+  const nlohmann::json runs = nlohmann::json::parse(results_json(results, false)).at("scenes")[0].at("runs");
+  EXPECT_EQ(runs[0].at("energy_by_cause"),
+            nlohmann::json::parse(R"({"flight": 0.5, "ball_impacts": -1.0, "wall_impacts": -2.0,
+                                      "friction": -3.0, "position_correction": 4.0})"));
+  EXPECT_EQ(runs[1].at("energy_by_cause"), nullptr);
+}
+
 TEST(Json, Coefficients_AreThere_WhereTheyWereMeasured) {
   Results results = four_verdicts();
   EXPECT_FALSE(nlohmann::json::parse(results_json(results, false)).contains("coefficients"));

@@ -65,7 +65,9 @@ class Barriers {
       account.book_moment(way, mass * world.velocity[ball]);
     } else {
       const Contact mirror;  // elastic and smooth
-      account.book(world.position[ball], Frictionless::on_wall<Dim>(world, ball, face.normal, mirror));
+      const Vec<Dim> impulse = Frictionless::on_wall<Dim>(world, ball, face.normal, mirror);
+      account.book(world.position[ball], impulse);
+      add_work_of_wall<false, Dim>(world, ball, face.normal, impulse, account.tally.energy);
     }
   }
 

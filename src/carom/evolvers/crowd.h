@@ -53,6 +53,10 @@ class Crowd {
     }
   }
 
+  /// What the last impact changed of the members' kinetic energy, J: since each of them had the velocity with
+  /// which it entered.
+  double energy_change_J() const { return energy_change_J_; }
+
   /// Whether the last impact was more than what fields give in a step.
   bool had_impact() const { return impact_; }
 
@@ -74,6 +78,7 @@ class Crowd {
       }
     }
     if (!solved) solve();
+    for (const std::uint32_t ball : cluster_.members()) energy_change_J_ += kinetic_energy_J(ball);
     for (const Kept& contact : solver_.contacts()) {
       const Bearing bearing = {side_of(contact) * impulse_of(contact), time_s};
       bearing_[contact_key(contact.a, contact.b, contact.wall)] = bearing;
@@ -114,6 +119,8 @@ class Crowd {
     candidates_.clear();
     met_.clear();
     impact_ = false;
+    energy_change_J_ = 0.0;
+    entered_ = 0;
     looked_at_ = 0;
     seed_ = seed;
     time_s_ = time_s;
@@ -127,13 +134,30 @@ class Crowd {
     return [&world](std::uint32_t ball) { return world.inverse_mass[ball]; };
   }
 
+  double kinetic_energy_J(std::uint32_t ball) const {
+    double energy_J = 0.5 * world().velocity[ball].squaredNorm() / world().inverse_mass[ball];
+    if constexpr (kFriction) {
+      energy_J += 0.5 * world().spin[ball].squaredNorm() / world().inverse_inertia[ball];
+    }
+    return energy_J;
+  }
+
+  /// Until they are pushed, new members have the velocity with which they enter.
+  void note_energy_of_new_members() {
+    while (entered_ < cluster_.members().size()) {
+      energy_change_J_ -= kinetic_energy_J(cluster_.members()[entered_++]);
+    }
+  }
+
   void guess() {
+    note_energy_of_new_members();
     World<Dim>& world = flights_.world();
     solver_.guess(world, world.velocity, world.spin, response_in(world), cluster_.rule().crowd_tolerance(),
                   kSweepsInARound);
   }
 
   void solve() {
+    note_energy_of_new_members();
     World<Dim>& world = flights_.world();
     solver_.solve_openings(world, world.velocity, world.spin, response_in(world),
                            cluster_.rule().crowd_tolerance());
@@ -270,6 +294,8 @@ class Crowd {
   std::vector<std::uint64_t> crowd_;
   std::uint64_t steps_ = 0;
   bool impact_ = false;
+  double energy_change_J_ = 0.0;
+  std::size_t entered_ = 0;  ///< members whose energy before the impact is in energy_change_J_
 };
 
 }  // namespace carom

@@ -46,6 +46,7 @@ class EventEvolver final : public Simulation {
         wall_surface_(scene.wall_contact),
         step_s_(scene.step_s),
         window_s_(std::exp2(std::ceil(std::log2(kStepsInWindow * scene.step_s)))) {
+    tally_.energy.known = true;
     if (std::min(surface_.restitution, wall_surface_.restitution) < 1.0) rapid_.assign(flights_.size(), 0);
   }
 
@@ -164,6 +165,7 @@ class EventEvolver final : public Simulation {
     if (v_n < 0.0) {
       ++tally_.impacts;
       const Vec<Dim> impulse = flights_.template collide<Law>(a, b, normal, surface);
+      flights_.template add_work_of_collision<Law>(normal, impulse, tally_.energy);
       if (!flights_.movable(a)) book(at_b.x - flights_.radius(b) * normal, impulse);
       if (!flights_.movable(b)) book(at_a.x + flights_.radius(a) * normal, -impulse);
     }
@@ -191,6 +193,7 @@ class EventEvolver final : public Simulation {
       ++tally_.wall_impacts;
       const Vec<Dim> impulse = flights_.template bounce<Law>(ball, normal, surface);
       tally_.wall_push_Ns += normal.dot(impulse);
+      flights_.template add_work_of_bounce<Law>(normal, impulse, tally_.energy);
       book(at.x - flights_.radius(ball) * normal, impulse);
     }
     plans_.plan_flight(ball);
@@ -245,7 +248,7 @@ class EventEvolver final : public Simulation {
           "ball {} comes to lie on a wall with friction: the event-driven evolver lets balls only slide",
           ball));
     }
-    flights_.lay_on(ball, wall, plans_.wall(wall).normal);
+    tally_.energy.wall_impacts_J += flights_.lay_on(ball, wall, plans_.wall(wall).normal);
   }
 
   // --- the account of walls and immovable balls

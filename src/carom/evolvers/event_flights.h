@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carom/flight.h"
+#include "carom/work.h"
 #include "carom/world.h"
 #include "engine/engine.h"
 
@@ -89,6 +90,16 @@ class EventFlights {
     return impulse;
   }
 
+  /// The work of the impulse that collide() or bounce() has just returned.
+  template <class Law>
+  void add_work_of_collision(const Vec<Dim>& normal, const Vec<Dim>& impulse, EnergyAccount& energy) const {
+    add_work_between<Law::kFriction, Dim>(pair_, 0, 1, normal, impulse, energy);
+  }
+  template <class Law>
+  void add_work_of_bounce(const Vec<Dim>& normal, const Vec<Dim>& impulse, EnergyAccount& energy) const {
+    add_work_of_wall<Law::kFriction, Dim>(pair_, 0, normal, impulse, energy);
+  }
+
   /// Counts all clocks from a moment `shift_s` later.
   void rebase(double shift_s) {
     for (Body& body : bodies_) body.clock -= shift_s;
@@ -107,11 +118,14 @@ class EventFlights {
 
   static constexpr std::uint32_t kNoWall = ~0U;
 
-  /// From here on the wall bears the ball, which slides along it, until a new flight begins.
-  void lay_on(std::uint32_t ball, std::uint32_t wall, const Vec<Dim>& normal) {
+  /// From here on the wall bears the ball, which slides along it, until a new flight begins. Returns what is
+  /// left of its fall, and lost, J (below 0).
+  double lay_on(std::uint32_t ball, std::uint32_t wall, const Vec<Dim>& normal) {
     Body& body = bodies_[ball];
-    body.v -= normal.dot(body.v) * normal;
+    const double v_n = normal.dot(body.v);
+    body.v -= v_n * normal;
     way_[ball] = kFirstWall + wall;
+    return -0.5 * v_n * v_n / inverse_mass_[ball];
   }
 
   /// The wall that bears the ball, or kNoWall.

@@ -144,14 +144,23 @@ class Flights {
     torque_.set(ball, Spin<Dim>::Zero());
   }
 
-  /// ∫ x dt over the parabola gives the moment of a constant force.
+  /// ∫ x dt over the parabola gives the moment of a constant force. Its work is force times way and moment
+  /// times turn; what bears the ball does none of it along its normal.
   void book_force(std::size_t ball, double tau) {
     const Motion<Dim> m = motion(ball);
     const Vec3 force = widened<Dim>(force_[ball]);
     const Vec<Dim> path_integral = tau * (m.x + (0.5 * tau) * m.v + (tau * tau / 6.0) * m.a);
     account_.tally.external_impulse += tau * force;
     account_.tally.external_angular_impulse += widened<Dim>(path_integral).cross(force);
-    if constexpr (kTurning) account_.tally.external_angular_impulse += tau * widened_spin<Dim>(torque_[ball]);
+    EnergyAccount& energy = account_.tally.energy;
+    const double work_J = force_[ball].dot(tau * (m.v + (0.5 * tau) * m.a));
+    if constexpr (kTurning) {
+      account_.tally.external_angular_impulse += tau * widened_spin<Dim>(torque_[ball]);
+      const Spin<Dim> turn = tau * (world_.spin[ball] + (0.5 * tau) * spin_acceleration_[ball]);
+      energy.friction_J += work_J + torque_[ball].dot(turn);
+    } else {
+      energy.wall_impacts_J += work_J;
+    }
   }
 
   World<Dim> world_;

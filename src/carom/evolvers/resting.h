@@ -98,6 +98,8 @@ class Resting {
   void join_crowd(const Seed& seed, double time_s) {
     grips_.clear();
     crowd_.join(seed, time_s);
+    EnergyAccount& energy = flights_.account().tally.energy;
+    (only_outside() ? energy.wall_impacts_J : energy.ball_impacts_J) += crowd_.energy_change_J();
     if (crowd_.had_impact()) ++flights_.account().tally.impacts;
     for (const std::uint32_t ball : members()) flights_.coast(ball);
     crowd_.for_each_impulse([this](const Kept& contact, const Vec<Dim>& impulse) {
@@ -163,10 +165,54 @@ class Resting {
       impact = impact || Solver::opening(contact, world.velocity) < -rule().slow() - rule().rounding();
     }
     if (impact) ++flights_.account().tally.impacts;
+    before_.clear();
+    for (const Kept& contact : solver_.contacts()) before_.push_back(parting(contact));
     solver_.solve(world, world.velocity, world.spin, response, rule().tolerance());
-    for (const Kept& contact : solver_.contacts()) {
+    for (std::size_t k = 0; k < before_.size(); ++k) {
+      const Kept& contact = solver_.contacts()[k];
       book(contact, contact.push * contact.normal + contact.drag);
+      book_work(contact, before_[k]);
     }
+  }
+
+  /// How the surfaces of a contact move against each other, m/s, an immovable one counting as at rest.
+  struct Parting {
+    double opening;
+    Vec<Dim> slip;
+  };
+
+  Parting parting(const Kept& contact) const {
+    const bool alone = contact.wall || inverse_mass(contact.b) == 0.0;
+    const double sign = contact.wall ? 1.0 : -1.0;
+    Parting parting{sign * contact.normal.dot(world().velocity[contact.a]), Vec<Dim>::Zero()};
+    if (!alone) parting.opening += contact.normal.dot(world().velocity[contact.b]);
+    if constexpr (kFriction) {
+      parting.slip = sign * velocity_at<Dim>(world(), contact.a, arm_of(contact));
+      if (!alone) {
+        const Vec<Dim> arm = -world().radius[contact.b] * contact.normal;
+        parting.slip += velocity_at<Dim>(world(), contact.b, arm);
+      }
+    }
+    return parting;
+  }
+
+  /// (1) of EnergyAccount for pushes that acted at many contacts at once.
+  void book_work(const Kept& contact, const Parting& before) {
+    const Parting after = parting(contact);
+    EnergyAccount& energy = flights_.account().tally.energy;
+    const bool outside = contact.wall || inverse_mass(contact.b) == 0.0;
+    (outside ? energy.wall_impacts_J : energy.ball_impacts_J) +=
+        0.5 * contact.push * (before.opening + after.opening);
+    if constexpr (kFriction) energy.friction_J += 0.5 * contact.drag.dot(before.slip + after.slip);
+  }
+
+  /// Whether every contact at hand is with a plane or an immovable ball. A crowd meets balls and walls at
+  /// once, and again and again: where balls are among them, all of what it changes is booked to impacts of
+  /// balls.
+  bool only_outside() const {
+    const auto& contacts = solver_.contacts();
+    return std::all_of(contacts.begin(), contacts.end(),
+                       [this](const Kept& contact) { return external(contact).has_value(); });
   }
 
   void book(const Kept& contact, const Vec<Dim>& impulse) {
@@ -263,6 +309,7 @@ class Resting {
   Cluster<Dim, Balls> cluster_;
   Solver solver_;
   Crowd<Dim, kAccelerates, kFriction> crowd_;
+  std::vector<Parting> before_;  ///< of the contacts at hand, before their impact
   std::vector<Grip> grips_;
 };
 

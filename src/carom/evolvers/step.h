@@ -45,6 +45,7 @@ class StepEvolver final : public Simulation {
         barriers_(scene),
         surface_(scene.ball_contact),
         wall_surface_(scene.wall_contact),
+        gravity_(flattened<kDim>(scene.effects.gravity.value_or(Vec3::Zero()))),
         acceleration_(Traits::kAccelerates ? world_.size() : 0) {
     if constexpr (Traits::kSheets) {
       add_slabs<kDim>(scene, planes_);
@@ -148,7 +149,7 @@ class StepEvolver final : public Simulation {
     count(v_n, sweep);
     const Place impulse =
         Law::template between<kDim>(world_, touch.a, touch.b, normal, rebounding(surface_, v_n));
-    account_.book_pair(world_, touch.a, touch.b, normal, impulse);
+    account_.template book_pair<Law::kFriction>(world_, touch.a, touch.b, normal, impulse);
     if constexpr (Law::kFriction) {
       if (!is_fixed(touch.a) && !is_fixed(touch.b)) {
         account_.book_moment(gap_between(touch.a, touch.b) * normal, impulse);
@@ -174,8 +175,7 @@ class StepEvolver final : public Simulation {
     const Place impulse =
         Law::template on_wall<kDim>(world_, touch.a, plane.normal, rebounding(wall_surface_, v_n));
     if (is_impact(v_n, sweep)) ++account_.tally.wall_impacts;
-    account_.book_wall(world_.position[touch.a] - world_.radius[touch.a] * plane.normal, plane.normal,
-                       impulse);
+    account_.template book_plane<Law::kFriction>(world_, touch.a, plane.normal, impulse);
     return true;
   }
 
@@ -237,6 +237,7 @@ class StepEvolver final : public Simulation {
       if (v_n < 0.0) count(v_n, 0);
     }
     if (!approaching) return;
+    account_.open_contacts(world_, contacts_);
     parts_.cluster_law->resolve(world_, contacts_);
     account_.book_contacts(world_, contacts_);
   }
@@ -266,10 +267,14 @@ class StepEvolver final : public Simulation {
     if (!is_fixed(b)) shift(b, -(share * world_.inverse_mass[b]) * normal);
   }
 
-  /// Puts a movable ball somewhere else, with the velocity that it has.
+  /// Puts a movable ball somewhere else, with the velocity that it has; under gravity that changes its
+  /// energy.
   void shift(std::uint32_t ball, const Place& way) {
     world_.position.set(ball, world_.position[ball] + way);
     account_.book_moment(way, world_.velocity[ball] / world_.inverse_mass[ball]);
+    if constexpr (Traits::kAccelerates) {
+      account_.tally.energy.correction_J -= gravity_.dot(way) / world_.inverse_mass[ball];
+    }
   }
 
   bool is_fixed(std::uint32_t ball) const { return world_.inverse_mass[ball] == 0.0; }
@@ -284,6 +289,7 @@ class StepEvolver final : public Simulation {
   Barriers<kDim> barriers_;
   Contact surface_;
   Contact wall_surface_;
+  Place gravity_;  ///< m/s²
   VectorColumn<kDim> acceleration_;
   double field_speed_ = 0.0;  ///< m/s, what the strongest acceleration gives in a step
   Account<kDim> account_;

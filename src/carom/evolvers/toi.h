@@ -251,7 +251,7 @@ class ToiEvolver final : public Simulation {
     } else if (v_n < 0.0) {
       ++flights_.account().tally.impacts;
       const Place impulse = Law::template between<kDim>(flights_.world(), a, b, normal, surface_);
-      flights_.account().book_pair(world(), a, b, normal, impulse);
+      flights_.account().template book_pair<Law::kFriction>(world(), a, b, normal, impulse);
       begin_flights({a, b});
     }
   }
@@ -280,8 +280,7 @@ class ToiEvolver final : public Simulation {
       ++flights_.account().tally.impacts;
       ++flights_.account().tally.wall_impacts;
       const Place impulse = Law::template on_wall<kDim>(flights_.world(), ball, plane.normal, wall_surface_);
-      flights_.account().book_wall(world().position[ball] - world().radius[ball] * plane.normal, plane.normal,
-                                   impulse);
+      flights_.account().template book_plane<Law::kFriction>(world(), ball, plane.normal, impulse);
       begin_flights({ball});
     }
   }
@@ -328,6 +327,7 @@ class ToiEvolver final : public Simulation {
       contact.restitution = contact.wall ? wall_surface_.restitution : surface_.restitution;
     }
     ++flights_.account().tally.impacts;
+    flights_.account().open_contacts(world(), touching_);
     cluster_law_->resolve(flights_.world(), touching_);
     flights_.account().book_contacts(world(), touching_);
     const std::vector<std::uint32_t> hit = resting_.members();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/page/energy_causes.h"
 #include "report/page/overview.h"
 #include "report/page/paths.h"
 #include "report/page/plots.h"
@@ -236,6 +237,7 @@ void add_scene(Node parent, const SceneComparison& scene, const Legend& legend) 
   add_plots(section, scene, legend);
   add_metrics(section, scene);
   add_statistics(section, scene, legend);
+  add_energy_causes(section, scene, legend);
   add_gates(section, scene);
   add_pairs(section, scene);
   add_settings(section, scene);
