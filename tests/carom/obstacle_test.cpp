@@ -388,6 +388,93 @@ INSTANTIATE_TEST_SUITE_P(
                                      Beam{"above", 2.0})),
     [](const auto& info) { return std::get<0>(info.param) + "_" + std::get<1>(info.param).name; });
 
+/// Balls that go through each other in a box that a lying barrier parts, under gravity.
+Scenario falling_through_a_barrier(int dimension, std::uint64_t seed, double restitution) {
+  Random random(seed);
+  Scenario scene = free_scene(dimension, {}, 5.0, 0.01);
+  for (int k = 0; k < 30; ++k) {
+    Vec3 place = random_vector(random, dimension, 0.8);
+    place.y() = random.uniform(0.6, 1.8) * (k % 2 == 0 ? 1.0 : -1.0);
+    scene.balls.push_back(ball_at(place, random_vector(random, dimension, 5.0)));
+    scene.balls.back().mass = random.uniform(0.5, 2.0);
+  }
+  scene.effects.collisions = false;
+  scene.effects.gravity = Vec3(0.5, -9.81, 0.0);
+  scene.wall_contact.restitution = restitution;
+  scene.barriers = {{Vec3(5, 12, 0) / 13, 0.0, 0.2, random.uniform(5.0, 20.0), 0.3, seed}};
+  for (int axis = 0; axis < dimension; ++axis) {
+    const double half = axis == 1 ? 3.0 : 1.0;
+    scene.walls.push_back({Vec3::Unit(axis), -half});
+    scene.walls.push_back({-Vec3::Unit(axis), -half});
+  }
+  return scene;
+}
+
+class BarriersUnderGravity : public testing::TestWithParam<int> {
+ protected:
+  static double energy_of(const Scenario& scene, const std::vector<BallState>& states) {
+    double sum = kinetic_energy_of(scene, states);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      sum -= scene.balls[i].mass * scene.effects.gravity->dot(states[i].position);
+    }
+    return sum;
+  }
+
+  /// What rounding may add up to: each step and each impact rounds each ball's energy a few times, which is
+  /// at most its share of what all have against the floor.
+  static double rounding_J(const Scenario& scene, double roundings) {
+    double scale = 0.0;
+    for (const Ball& ball : scene.balls) {
+      scale += ball.mass * (0.5 * ball.velocity.squaredNorm() + scene.effects.gravity->norm() * 4.0);
+    }
+    return 8.0 * std::numeric_limits<double>::epsilon() * roundings * scale;
+  }
+};
+
+TEST_P(BarriersUnderGravity, KeepTheEnergy_WhereverBallsPass) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scenario scene = falling_through_a_barrier(GetParam(), seed, 1.0);
+    const auto simulation = compose(scene, {"toi", ""});
+    const auto states = run(*simulation, scene, 500);
+    const auto impacts = static_cast<double>(simulation->tally().impacts);
+    EXPECT_NEAR(energy_of(scene, states), energy_of(scene, states_of(scene)),
+                rounding_J(scene, 500.0 + impacts));
+    int passed = 0;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const Vec3& normal = scene.barriers[0].normal;
+      passed += normal.dot(states[i].position) * normal.dot(scene.balls[i].position) < 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(passed, 0);
+    // What the barrier and the walls have pushed is in the account.
+    Vec3 momentum = momentum_of(scene, states_of(scene)) + simulation->tally().external_impulse;
+    double scale = 0.0;
+    for (const Ball& ball : scene.balls) {
+      momentum += scene.duration_s * ball.mass * *scene.effects.gravity;
+      scale += ball.mass * (ball.velocity.norm() + 12.0);  // m/s, of a fall through the box
+    }
+    EXPECT_LE((momentum_of(scene, states) - momentum).norm(),
+              8.0 * std::numeric_limits<double>::epsilon() * (500.0 + impacts) * scale);
+  }
+}
+
+TEST_P(BarriersUnderGravity, NeverGainEnergy_WithLossyWalls) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scenario scene = falling_through_a_barrier(GetParam(), seed, 0.5);
+    const auto simulation = compose(scene, {"toi", ""});
+    double last = energy_of(scene, states_of(scene));
+    for (int k = 0; k < 500; ++k) {
+      simulation->advance(0.01, 1);
+      const double now = energy_of(scene, states_of(*simulation, scene.balls.size()));
+      ASSERT_LE(now, last + rounding_J(scene, 4.0)) << "step " << k;
+      last = now;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Dimensions, BarriersUnderGravity, testing::Values(2, 3));
+
 TEST(Barriers, AreMetAgainAndAgain_AlikeAtAnyStep) {
   // In a box, so that each ball is decided on some ten times, also within one step.
   Random random(21);

@@ -17,8 +17,12 @@ namespace carom {
 ///   E > V:  T = 1 / (1 + V² sin²(k a) / (4 E (E - V))),   k = √(2 m (E - V)) / ħ,
 ///   E = V:  T = 1 / (1 + m a² V / (2 ħ²)),
 /// with E = ½ m v_n² J, V the height J, a the thickness m, ħ in J s; it keeps its velocity and appears at the
-/// other face. Otherwise it is reflected elastically. Source: e.g. L. D. Landau, E. M. Lifshitz, "Quantum
-/// Mechanics", §25. Not to be confused with a slab that a ball jumps because the step is too long.
+/// other face. Otherwise it is reflected elastically. Under gravity g the other face is another height: with
+/// the way s across, the velocity along the normal becomes
+///   v_n'² = v_n² + 2 g·s,                                                               (2)
+/// so that the energy is kept; a ball that has not enough for the way up is reflected. Source: e.g. L. D.
+/// Landau, E. M. Lifshitz, "Quantum Mechanics", §25. Not to be confused with a slab that a ball jumps because
+/// the step is too long.
 ///
 /// @param v_n_mps  the velocity along the normal
 inline double transmission(const Barrier& barrier, double mass_kg, double v_n_mps) {
@@ -52,17 +56,22 @@ template <int Dim>
 class Barriers {
  public:
   explicit Barriers(const Scenario& scene)
-      : barriers_(scene.barriers), meetings_(scene.barriers.empty() ? 0 : scene.balls.size(), 0) {}
+      : barriers_(scene.barriers),
+        meetings_(scene.barriers.empty() ? 0 : scene.balls.size(), 0),
+        gravity_(flattened<Dim>(scene.effects.gravity.value_or(Vec3::Zero()))) {}
 
   /// A ball that approaches this face passes, or is reflected.
   void meet(World<Dim>& world, std::size_t ball, const Plane<Dim>& face, Account<Dim>& account) {
     const Barrier& barrier = barriers_[static_cast<std::size_t>(face.barrier)];
     const double mass = 1.0 / world.inverse_mass[ball];
     const double v_n = face.normal.dot(world.velocity[ball]);
-    if (draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n)) {
-      const Vec<Dim> way = -2.0 * (face.depth + world.radius[ball]) * face.normal;
+    const Vec<Dim> way = -2.0 * (face.depth + world.radius[ball]) * face.normal;
+    const double fall = 2.0 * gravity_.dot(way);
+    const bool passes = draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n);
+    if (passes && v_n * v_n + fall > 0.0) {
       world.position.set(ball, world.position[ball] + way);
       account.book_moment(way, mass * world.velocity[ball]);
+      if (fall != 0.0) push(world, ball, (-std::sqrt(v_n * v_n + fall) - v_n) * face.normal, account);
     } else {
       const Contact mirror;  // elastic and smooth
       const Vec<Dim> impulse = Frictionless::on_wall<Dim>(world, ball, face.normal, mirror);
@@ -72,8 +81,14 @@ class Barriers {
   }
 
  private:
+  static void push(World<Dim>& world, std::size_t ball, const Vec<Dim>& change, Account<Dim>& account) {
+    world.velocity.set(ball, world.velocity[ball] + change);
+    account.book(world.position[ball], change / world.inverse_mass[ball]);
+  }
+
   std::vector<Barrier> barriers_;
   std::vector<std::uint32_t> meetings_;  ///< of each ball; empty without barriers
+  Vec<Dim> gravity_;                     ///< m/s²
 };
 
 template <int Dim>
