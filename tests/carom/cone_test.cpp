@@ -115,8 +115,8 @@ TEST(RoughContacts, ObeyCoulombsCone_WhereTheyAreSolved) {
       return;
     }
     for (const KeptContact<Dim>& contact : solver.contacts()) {
-      // Velocities of some 1 m/s, which light balls between heavy ones reach by impulses 1e8 times those that
-      // remain.
+      // A light ball is moved by up to 32 impulses of heavy ones, 1e8 times its own momentum of some 1 m/s,
+      // and each is rounded: 32 ε × 1e8 = 7e-7.
       const double u_n = Solver::opening(contact, world.velocity);
       EXPECT_GE(u_n, -1e-6);
       EXPECT_GE(contact.push, 0.0);

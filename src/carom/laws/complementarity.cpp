@@ -36,8 +36,8 @@ constexpr double kProximal = 1e-12;
 /// Proximal steps with one factorization: the second takes out what rounding and kProximal left of the first.
 constexpr int kRefinements = 2;
 
-/// Of a step: what is not lowered by less of it is not lowered at all.
-constexpr double kLeastShare = 0x1p-20;
+/// Of a bent step: less is not tried.
+constexpr double kLeastShare = 0x1p-10;
 
 /// Three components of two balls.
 constexpr std::size_t kMostEntriesOfANormal = 6;
@@ -211,8 +211,9 @@ class SweepsAndSubspace {
 
   VectorXd openings() const { return start_ + normals_.transpose() * moved_; }
 
-  /// Steps towards w' = 0 at the contacts that push. What would have to pull stops where it does not push: the
-  /// path is bent there, and taken as far, by halves, as it lowers the objective.
+  /// Steps towards w' = 0 at the contacts that push. What would have to pull stops where it does not push:
+  /// the path is bent there, and taken as far, by halves, as it lowers the objective. Where no half does, it
+  /// ends where the first contact stops pushing: up to there it is straight, and leads down.
   void solve_pushing() {
     const VectorXd step = newton_step();
     const VectorXd w = openings();
@@ -222,8 +223,18 @@ class SweepsAndSubspace {
       share *= 0.5;
       next = (impulse_ + share * step).cwiseMax(0.0);
     }
+    if (share <= kLeastShare) next = (impulse_ + first_stop(step) * step).cwiseMax(0.0);
     impulse_ = next;
     moved_ = normals_ * impulse_;
+  }
+
+  /// The share of a step at which the first contact does not push any more; at most 1.
+  double first_stop(const VectorXd& step) const {
+    double share = 1.0;
+    for (Index c = 0; c < step.size(); ++c) {
+      if (step[c] < 0.0) share = std::min(share, impulse_[c] / -step[c]);
+    }
+    return share;
   }
 
   double change_of_objective(const VectorXd& step, const VectorXd& w) const {

@@ -26,7 +26,8 @@ constexpr int kMostHalvings = 3;
 constexpr double kLeastProximal = 1e-12;
 constexpr double kProximalStep = 1e6;
 
-/// Of an impulse, in units of ε: a dozen contacts of a ball, three axes, the impulse itself.
+/// Of all that impulses add to a velocity, in units of ε: sums over a dozen contacts of a ball and three
+/// axes.
 constexpr double kRoundings = 32.0;
 
 class Newton {
@@ -34,10 +35,37 @@ class Newton {
   Newton(const ConeProblem& problem, const VectorXd& start)
       : problem_(problem),
         matrix_(problem.directions.transpose() * problem.directions),
+        absolute_directions_(problem.directions.cwiseAbs()),
         diagonal_(matrix_.diagonal()),
         best_(start) {}
 
+  /// With steps that lower what is missed; where these end too early, with whole ones.
   bool solve() {
+    const VectorXd start = best_;
+    if (solve_damped()) return true;
+    const VectorXd damped = best_;
+    best_ = start;
+    proximal_ = kLeastProximal;
+    measure(best_);
+    for (int step = 0; step < kMostSteps && !is_solved(); ++step) {
+      best_ = newton_point();
+      measure(best_);
+    }
+    if (is_solved()) return true;
+    best_ = damped;
+    return false;
+  }
+
+  const VectorXd& best() const { return best_; }
+
+  /// What the equations miss, in units of rounding.
+  double residual(const VectorXd& impulse) {
+    measure(impulse);
+    return worst_;
+  }
+
+ private:
+  bool solve_damped() {
     double least = measure(best_);
     for (int step = 0; step < kMostSteps && !is_solved(); ++step) {
       const VectorXd way = newton_point() - best_;
@@ -62,15 +90,6 @@ class Newton {
     return is_solved();
   }
 
-  const VectorXd& best() const { return best_; }
-
-  /// What the equations miss, in units of rounding.
-  double residual(const VectorXd& impulse) {
-    measure(impulse);
-    return worst_;
-  }
-
- private:
   Index axes() const { return problem_.axes; }
   Index count() const { return problem_.friction.size(); }
   bool is_solved() const { return worst_ <= 1.0; }
@@ -92,6 +111,8 @@ class Newton {
   /// Sum of squares of what the equations miss; velocity_ and worst_ are those of the impulse then.
   double measure(const VectorXd& impulse) {
     velocity_ = problem_.w + problem_.directions.transpose() * (problem_.directions * impulse);
+    constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+    const VectorXd added = absolute_directions_.transpose() * (absolute_directions_ * impulse.cwiseAbs());
     double sum = 0.0;
     worst_ = 0.0;
     for (Index c = 0; c < count(); ++c) {
@@ -101,9 +122,8 @@ class Newton {
       const auto drag = impulse.segment(normal + 1, axes() - 1);
       const VectorXd wanted = wanted_drag(c, impulse);
       const double missing_drag = yield(c) * (drag - wanted).norm();
-      constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-      const double size = diagonal_[normal] * std::abs(push) + yield(c) * drag.norm();
-      const double known = problem_.rounding + kRoundings * kEpsilon * size;
+      const double known =
+          problem_.rounding + kRoundings * kEpsilon * added.segment(normal, axes()).maxCoeff();
       sum += missing * missing + missing_drag * missing_drag;
       worst_ = std::max({worst_, std::abs(missing) / known, missing_drag / known});
     }
@@ -195,6 +215,7 @@ class Newton {
 
   const ConeProblem& problem_;
   const SparseMatrix<double> matrix_;  ///< W
+  const SparseMatrix<double> absolute_directions_;
   const VectorXd diagonal_;
   VectorXd best_;
   VectorXd velocity_;  ///< w'
