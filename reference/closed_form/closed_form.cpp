@@ -18,8 +18,9 @@ using closed_form::Motion;
 using closed_form::Twofold;
 
 /// The families in the order in which they are tried.
-constexpr std::array kFamilies = {closed_form::try_rough_wall, closed_form::try_separable, closed_form::try_drag,
-                                  closed_form::try_magnus,     closed_form::try_line,      closed_form::try_pair};
+constexpr std::array kFamilies = {closed_form::try_rough_wall, closed_form::try_separable,
+                                  closed_form::try_drag,       closed_form::try_magnus,
+                                  closed_form::try_line,       closed_form::try_pair};
 
 /// The first family that solves the scene; or else the first reason that one gives.
 Attempt find_motion(const Scenario& scenario) {

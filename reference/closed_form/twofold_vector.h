@@ -8,7 +8,8 @@
 
 /// Lets Eigen's vectors hold pairs of doubles.
 template <>
-struct Eigen::NumTraits<carom::closed_form::Twofold> : Eigen::GenericNumTraits<carom::closed_form::Twofold> {};
+struct Eigen::NumTraits<carom::closed_form::Twofold> : Eigen::GenericNumTraits<carom::closed_form::Twofold> {
+};
 
 namespace carom::closed_form {
 

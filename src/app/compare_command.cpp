@@ -43,8 +43,7 @@ SceneComparison compare_scene(const ScenarioPtr& scene, const std::vector<Engine
   std::vector<Run> runs = run_engines(*scene, engines, limits, options.parallel, [&](std::size_t done) {
     progress.advance(fmt::format("{} {}", scene->id, engines[done].source.name));
   });
-  std::vector<RunSymmetries> symmetries =
-      check_symmetries(*scene, runs, engines, limits, options.parallel);
+  std::vector<RunSymmetries> symmetries = check_symmetries(*scene, runs, engines, limits, options.parallel);
   return compare(scene, std::move(truth), std::move(runs), engines_under_test(engines),
                  std::move(symmetries));
 }

@@ -80,8 +80,7 @@ PairComparison pair_of(const Yardstick& yardstick, double tolerance_m, std::size
 }  // namespace
 
 SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
-                        const std::vector<std::string>& under_test,
-                        std::vector<RunSymmetries> symmetries) {
+                        const std::vector<std::string>& under_test, std::vector<RunSymmetries> symmetries) {
   symmetries.resize(runs.size());
   SceneComparison result;
   result.scene = std::move(scene);

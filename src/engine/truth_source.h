@@ -48,9 +48,9 @@ struct Solution {
   std::vector<Tie> ties;            ///< the first kMostTiesTold
   /// For each moment asked for: how much larger than at the start a small change of the initial positions and
   /// velocities has become, |δx(t)|_max / |δ|, with δ of a random direction and |δ| the largest change of any
-  /// position (m) or, over the duration, velocity (m/s × duration). An axis along which all balls are level and
-  /// still, so that no rounding moves them along it, is left out of δ. Shorter where the change is not followed
-  /// any further, and empty where it was not found out.
+  /// position (m) or, over the duration, velocity (m/s × duration). An axis along which all balls are level
+  /// and still, so that no rounding moves them along it, is left out of δ. Shorter where the change is not
+  /// followed any further, and empty where it was not found out.
   std::vector<double> amplification;
 
   static constexpr std::size_t kMostImpactsTold = 100'000;
