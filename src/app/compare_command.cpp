@@ -8,6 +8,8 @@
 #include "app/machine.h"
 #include "app/prepare.h"
 #include "app/progress.h"
+#include "comparison/baseline.h"
+#include "comparison/baseline_file.h"
 #include "comparison/check_symmetries.h"
 #include "comparison/compare.h"
 #include "core/files.h"
@@ -17,6 +19,7 @@
 #include "report/page.h"
 #include "report/summary.h"
 #include "report/table.h"
+#include "report/words.h"
 
 namespace carom {
 
@@ -54,6 +57,23 @@ bool full_report(const Options& options) {
   return !options.report_folder.empty() && std::find(scenes.begin(), scenes.end(), "all") != scenes.end();
 }
 
+/// By how much a value may be above the baseline's: rounding changes with a compiler, halves and doubles
+/// small errors, and is no regression; what is wrong in an engine changes them by powers of ten.
+constexpr double kBaselineFactor = 2.0;
+
+/// The baseline that was asked for; read before anything is run, so that a bad file stops the program at
+/// once.
+std::optional<Baseline> read_baseline(const Options& options) {
+  if (options.baseline_file.empty()) return std::nullopt;
+  return parse_baseline(read_file(options.baseline_file), options.baseline_file);
+}
+
+void write_baseline(const Options& options, const std::optional<Baseline>& read, const Results& results) {
+  if (options.write_baseline_file.empty()) return;
+  write_file(options.write_baseline_file,
+             baseline_json(merged(read.value_or(Baseline()), baseline_of(results))));
+}
+
 void write_outputs(const Options& options, const Results& results) {
   if (!options.json_file.empty()) write_file(options.json_file, results_json(results, options.all_balls));
   if (!options.junit_file.empty()) write_file(options.junit_file, results_junit(results));
@@ -79,9 +99,11 @@ void write_outputs(const Options& options, const Results& results) {
 ExitCode compare_command(const Options& options) {
   const EngineCatalog catalog(engine_folder(), options.engines_from);
   const std::vector<ScenarioPtr> scenes = load_scenes(options, catalog);
+  const std::optional<Baseline> baseline = read_baseline(options);
   const ProcessLimits limits{options.timeout_s, options.memory_mib};
 
   Results results;
+  results.seed = options.seed;
   results.version = CAROM_VERSION;
   results.machine = this_machine();
   results.missing = catalog.missing();
@@ -102,8 +124,14 @@ ExitCode compare_command(const Options& options) {
   if (full_report(options)) {
     results.coefficients = measure_coefficients(engines, limits, options.parallel);
   }
-  if (!options.quiet || !results.holds()) fmt::print("{}", results_table(results, options.color));
+  if (baseline) hold_against(*baseline, options.baseline_factor.value_or(kBaselineFactor), results);
+  if (!options.quiet || !results.holds()) {
+    fmt::print("{}", results_table(results, options.color));
+  } else {
+    for (const std::string& line : baseline_lines(results)) fmt::print("baseline: {}\n", line);
+  }
   write_outputs(options, results);
+  write_baseline(options, baseline, results);
   return results.holds() ? ExitCode::holds : ExitCode::violated;
 }
 

@@ -133,6 +133,18 @@ Parsed parse_options(int argc, char** argv) {
   check->add_option("--junit", options.junit_file, "write JUnit XML to this file")->check(not_empty());
   check->add_option("--summary", options.summary_file, "write a Markdown summary to this file")
       ->check(not_empty());
+  CLI::Option* baseline =
+      check->add_option("--baseline", options.baseline_file, "hold every value against those of this file")
+          ->check(not_empty());
+  check
+      ->add_option("--baseline-factor", options.baseline_factor,
+                   "by how much a value may be above the baseline's (default: 2)")
+      ->check(number_from(1.0, "a number >= 1"))
+      ->needs(baseline);
+  check
+      ->add_option("--write-baseline", options.write_baseline_file,
+                   "write every value to this file; with --baseline, keep what did not take part")
+      ->check(not_empty());
   add_common_options(*check, options);
 
   CLI::App* explain = app.add_subcommand("explain", "which of an engine's settings explains its divergence");

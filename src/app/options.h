@@ -24,6 +24,9 @@ struct Options {
   std::string report_folder;
   std::string junit_file;
   std::string summary_file;
+  std::string baseline_file;        ///< to hold the results against
+  std::string write_baseline_file;  ///< to write the results' values to
+  std::optional<double> baseline_factor;
   bool all_balls = false;
 
   int parallel = 1;

@@ -55,6 +55,7 @@ struct GateResult {
   double limit = 0.0;
   std::optional<double> value;  ///< nothing: the metric does not apply, and a gate on it cannot hold
   bool holds = false;
+  std::optional<double> baseline;  ///< what the limit was made from; nothing: the scene sets it
 };
 
 enum class Verdict { pass, fail, shown, unsupported, error };

@@ -15,6 +15,8 @@ Limits limits_for(const Gate& gate, const RunComparison& result) {
   return limits;
 }
 
+}  // namespace
+
 Verdict verdict_of(const RunComparison& result) {
   switch (result.run.status) {
     case RunStatus::unsupported:
@@ -32,12 +34,10 @@ Verdict verdict_of(const RunComparison& result) {
   return all_hold ? Verdict::pass : Verdict::fail;
 }
 
-}  // namespace
-
 void hold_gates(const Gate& gate, RunComparison& result) {
   for (const auto& [metric, limit] : limits_for(gate, result)) {
     const std::optional<double> value = result.metrics[metric];
-    result.gates.push_back({metric, limit, value, value && *value <= limit});
+    result.gates.push_back({metric, limit, value, value && *value <= limit, std::nullopt});
   }
   result.verdict = verdict_of(result);
 }

@@ -8,4 +8,7 @@ namespace carom {
 /// gates and its verdict.
 void hold_gates(const Gate& gate, RunComparison& result);
 
+/// What a run comes to by how it ended and by its gates: shown where it ended well and has none.
+Verdict verdict_of(const RunComparison& result);
+
 }  // namespace carom

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,29 @@ struct MissingEngine {
   std::string package;  ///< the Debian package that it is built from
 };
 
+/// What came of holding the results against a baseline, beside the gates that stand with the runs.
+struct BaselineFindings {
+  /// What was not compared, with the reason.
+  struct Group {
+    std::string reason;
+    std::vector<std::string> what;
+  };
+  /// A value that fell below the baseline's by more than the factor.
+  struct Better {
+    std::string scene;
+    std::string engine;
+    Metric metric = Metric::energy;
+    double value = 0.0;
+    double baseline = 0.0;
+  };
+
+  std::string file;
+  double factor = 1.0;
+  std::size_t compared = 0;  ///< values
+  std::vector<Group> not_compared;
+  std::vector<Better> better;
+};
+
 /// Everything that one invocation of the program found out. All reports are made from this.
 struct Results {
   std::string version;  ///< of Carom
@@ -31,6 +56,8 @@ struct Results {
   std::vector<MissingEngine> missing;
   std::vector<SceneComparison> scenes;
   std::vector<CoefficientPanel> coefficients;  ///< empty where they were not measured
+  std::optional<std::uint64_t> seed;         ///< given instead of the scenes' own
+  std::optional<BaselineFindings> baseline;  ///< where there was one to hold against
 
   /// Whether every gate holds and every engine under test did what was asked of it.
   bool holds() const {

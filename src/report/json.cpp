@@ -98,7 +98,9 @@ Json gates(const RunComparison& result) {
     json.push_back({{"metric", name_of(gate.metric)},
                     {"limit", gate.limit},
                     {"value", number_or_null(gate.value)},
-                    {"holds", gate.holds}});
+                    {"holds", gate.holds},
+                    {"from", gate.baseline ? "baseline" : "scene"}});
+    if (gate.baseline) json.back()["baseline"] = *gate.baseline;
   }
   return json;
 }
@@ -190,6 +192,25 @@ Json pair_json(const SceneComparison& scene, const PairComparison& pair) {
           {"first_divergence", divergence(pair.first_divergence)}};
 }
 
+Json baseline_json(const BaselineFindings& baseline) {
+  Json json = {{"file", baseline.file},
+               {"factor", baseline.factor},
+               {"compared", baseline.compared},
+               {"not_compared", Json::array()},
+               {"better", Json::array()}};
+  for (const BaselineFindings::Group& group : baseline.not_compared) {
+    json["not_compared"].push_back({{"reason", group.reason}, {"what", group.what}});
+  }
+  for (const BaselineFindings::Better& better : baseline.better) {
+    json["better"].push_back({{"scene", better.scene},
+                              {"engine", better.engine},
+                              {"metric", name_of(better.metric)},
+                              {"value", better.value},
+                              {"baseline", better.baseline}});
+  }
+  return json;
+}
+
 Json scene_json(const SceneComparison& comparison, bool all_balls) {
   const Scenario& scene = *comparison.scene;
   Json json = {{"id", scene.id},
@@ -245,6 +266,7 @@ std::string results_json(const Results& results, bool all_balls) {
   for (const MissingEngine& engine : results.missing) {
     json["not_built"].push_back({{"engine", engine.name}, {"package", engine.package}});
   }
+  if (results.baseline) json["baseline"] = baseline_json(*results.baseline);
   for (const SceneComparison& scene : results.scenes) json["scenes"].push_back(scene_json(scene, all_balls));
   if (!results.coefficients.empty()) {
     json["coefficients"] = Json::array();

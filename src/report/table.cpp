@@ -152,6 +152,7 @@ std::string results_table(const Results& results, bool color) {
   for (const MissingEngine& engine : results.missing) {
     text += fmt::format("{} is not built: {} is not installed\n", engine.name, engine.package);
   }
+  for (const std::string& line : baseline_lines(results)) text += fmt::format("baseline: {}\n", line);
   const std::vector<std::string> broken = violations(results);
   for (const std::string& line : broken) text += fmt::format("violated: {}\n", line);
   if (broken.empty()) text += all_is_well(results) + "\n";

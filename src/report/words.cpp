@@ -1,6 +1,7 @@
 #include "report/words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -67,6 +68,18 @@ std::string wrapped(std::string_view heading, std::string_view text) {
   return lines + line + "\n";
 }
 
+std::string violation(const GateResult& gate) {
+  const std::string_view metric = name_of(gate.metric);
+  if (!gate.value) {
+    return fmt::format("{} cannot be told in this scene, so its limit {} cannot hold{}", metric, gate.limit,
+                       gate.baseline ? fmt::format("; the baseline has {}", *gate.baseline) : "");
+  }
+  // All digits: a value that is just above its limit must not look equal to it.
+  const std::string above = fmt::format("{} = {} is above", metric, *gate.value);
+  if (!gate.baseline) return fmt::format("{} its limit {}", above, gate.limit);
+  return fmt::format("{} {}, what its baseline {} allows", above, gate.limit, *gate.baseline);
+}
+
 std::vector<std::string> violations(const SceneComparison& scene, const RunComparison& run) {
   std::vector<std::string> lines;
   if (!run.violates()) return lines;
@@ -75,15 +88,7 @@ std::vector<std::string> violations(const SceneComparison& scene, const RunCompa
     return {fmt::format("{}: {}: {}", who, name_of(run.run.status), run.run.reason)};
   }
   for (const GateResult& gate : run.gates) {
-    if (gate.holds) continue;
-    if (gate.value) {
-      // All digits: a value that is just above its limit must not look equal to it.
-      lines.push_back(fmt::format("{}: {} = {} is above its limit {}", who, name_of(gate.metric), *gate.value,
-                                  gate.limit));
-    } else {
-      lines.push_back(fmt::format("{}: {} cannot be told in this scene, so its limit {} cannot hold", who,
-                                  name_of(gate.metric), gate.limit));
-    }
+    if (!gate.holds) lines.push_back(fmt::format("{}: {}", who, violation(gate)));
   }
   return lines;
 }
@@ -99,6 +104,49 @@ std::vector<std::string> violations(const Results& results) {
   return all;
 }
 
+namespace {
+
+std::string counted(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// "a, b, c and 7 more": enough to know what is meant.
+std::string first_few(const std::vector<std::string>& all) {
+  constexpr std::size_t kNamed = 8;
+  const std::vector<std::string> named(
+      all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, all.size())));
+  const std::string text = fmt::format("{}", fmt::join(named, ", "));
+  return all.size() <= kNamed ? text : fmt::format("{} and {} more", text, all.size() - kNamed);
+}
+
+std::string from_baseline(const Results& results) {
+  if (!results.baseline) return {};
+  return fmt::format(", {} of them made from {}", results.baseline->compared, results.baseline->file);
+}
+
+}  // namespace
+
+std::vector<std::string> baseline_lines(const Results& results) {
+  std::vector<std::string> lines;
+  if (!results.baseline) return lines;
+  const BaselineFindings& baseline = *results.baseline;
+  for (const BaselineFindings::Group& group : baseline.not_compared) {
+    lines.push_back(fmt::format("not compared, {}: {}", group.reason, first_few(group.what)));
+  }
+  if (baseline.better.empty()) return lines;
+  std::vector<std::string> better;
+  better.reserve(baseline.better.size());
+  for (const BaselineFindings::Better& each : baseline.better) {
+    better.push_back(fmt::format("{} {} {} = {} (was {})", each.scene, each.engine, name_of(each.metric),
+                                 short_number(each.value), short_number(each.baseline)));
+  }
+  lines.push_back(
+      fmt::format("better than the baseline: {}; carom check … --baseline {} --write-baseline {} "
+                  "takes it over",
+                  first_few(better), baseline.file, baseline.file));
+  return lines;
+}
+
 std::string all_is_well(const Results& results) {
   std::size_t gates = 0;
   std::size_t scenes = 0;
@@ -112,12 +160,9 @@ std::string all_is_well(const Results& results) {
     gates += in_scene;
     scenes += in_scene > 0 ? 1 : 0;
   }
-  const auto counted = [](std::size_t count, std::string_view what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-  };
   std::string text = gates == 0 ? "No gate: nothing was checked."
-                                : fmt::format("Every gate holds: {} in {}.", counted(gates, "limit"),
-                                              counted(scenes, "scene"));
+                                : fmt::format("Every gate holds: {} in {}{}.", counted(gates, "limit"),
+                                              counted(scenes, "scene"), from_baseline(results));
   if (errors > 0) text += fmt::format(" {} not under test ended in error.", counted(errors, "run"));
   return text;
 }

@@ -716,6 +716,164 @@ TEST_F(CommandLine, JUnit_TellsFailuresFromErrors) {
   EXPECT_EQ(totals("broken-abort"), std::pair(false, true));
 }
 
+// --- baseline
+// ------------------------------------------------------------------------------------------------
+
+/// The gates of the first run that come from the baseline.
+std::vector<json> from_baseline(const json& run) {
+  std::vector<json> gates;
+  for (const json& gate : run.at("gates")) {
+    if (gate.at("from") == "baseline") gates.push_back(gate);
+  }
+  return gates;
+}
+
+class BaselineOption : public CommandLine {
+ protected:
+  static Words with(const Words& more) {
+    Words words = {"check",
+                   "impact/head-on",
+                   "impact/resting-target",
+                   "--engines-from",
+                   CAROM_TEST_ENGINE_DIR,
+                   "--engine",
+                   "textbook",
+                   "--json",
+                   "results.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  json baseline() const { return json::parse(contents(work_ / "base.json")); }
+  void write_baseline() const { EXPECT_EQ(carom(with({"--write-baseline", "base.json"})).exit_code, kHolds); }
+};
+
+TEST_F(BaselineOption, WrittenAndHeldAgainst_Holds) {
+  write_baseline();
+  const json scene = baseline().at("scenes").at("impact/head-on");
+  EXPECT_EQ(scene.at("step"), 0.004);
+  EXPECT_EQ(scene.at("sha256").get<std::string>().size(), 64U);
+  EXPECT_TRUE(scene.at("engines").at("textbook").contains("momentum"));
+  const Ended ended = carom(with({"--baseline", "base.json"}));
+  EXPECT_EQ(ended.exit_code, kHolds);
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("of them made from base.json"), Not(HasSubstr("baseline:"))));
+  EXPECT_EQ(from_baseline(runs().at(0)).size(), scene.at("engines").at("textbook").size());
+}
+
+/// The value 0.5 of the loss at rest was 0.2 once: worse by 2.5.
+TEST_F(BaselineOption, WorseValue_IsAViolationEverywhere) {
+  write_baseline();
+  json changed = baseline();
+  changed["scenes"]["impact/resting-target"]["engines"]["textbook@velocity-threshold"] = {{"energy", 0.2}};
+  write("base.json", changed.dump());
+  const Words engine = {"--engine", "textbook@velocity-threshold", "--baseline", "base.json"};
+  Words words = with(engine);
+  words.insert(words.end(), {"--junit", "junit.xml", "--summary", "summary.md"});
+  const Ended ended = carom(words);
+  EXPECT_EQ(ended.exit_code, kViolated);
+  const std::string says = "energy = 0.5 is above 0.4, what its baseline 0.2 allows";
+  EXPECT_THAT(ended.out, HasSubstr("violated: impact/resting-target: textbook@velocity-threshold: " + says));
+  const std::vector<json> gates = from_baseline(scenes().at(1).at("runs").at(1));
+  ASSERT_EQ(gates.size(), 1U);
+  EXPECT_EQ(gates[0].at("baseline"), 0.2);
+  EXPECT_EQ(gates[0].at("limit"), 0.4);
+  EXPECT_EQ(gates[0].at("holds"), false);
+  EXPECT_THAT(contents(work_ / "junit.xml"), HasSubstr(says));
+  EXPECT_THAT(contents(work_ / "summary.md"), HasSubstr("| energy | 0.5 | 0.4 | the baseline's 0.2 |"));
+  words.insert(words.end(), {"--baseline-factor", "2.6"});
+  EXPECT_THAT(carom(words).out, Not(HasSubstr(says)));
+}
+
+TEST_F(BaselineOption, BetterValue_IsOffered_AndTakenOver) {
+  write_baseline();
+  json changed = baseline();
+  changed["scenes"]["impact/head-on"]["engines"]["textbook"]["position"] = 1e-3;
+  changed["scenes"]["another/scene"] = changed["scenes"]["impact/head-on"];
+  write("base.json", changed.dump());
+  const Ended ended = carom(with({"--quiet", "--baseline", "base.json", "--write-baseline", "base.json"}));
+  EXPECT_EQ(ended.exit_code, kHolds);
+  EXPECT_THAT(ended.out,
+              AllOf(StartsWith("baseline: better than the baseline: impact/head-on textbook position"),
+                    HasSubstr("(was 0.001); carom check … --baseline base.json --write-baseline")));
+  EXPECT_LT(baseline().at("scenes").at("impact/head-on").at("engines").at("textbook").at("position"), 1e-9);
+  // What did not take part is kept.
+  EXPECT_TRUE(baseline().at("scenes").contains("another/scene"));
+}
+
+TEST_F(BaselineOption, WhatCannotBeCompared_IsSaid) {
+  write_baseline();
+  json changed = baseline();
+  changed["scenes"]["impact/head-on"]["sha256"] = "another";
+  changed["scenes"].erase("impact/resting-target");
+  write("base.json", changed.dump());
+  const Ended ended = carom(with({"--baseline", "base.json"}));
+  EXPECT_EQ(ended.exit_code, kHolds);
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("baseline: not compared, the scene's file has changed since (its sha256): "
+                              "impact/head-on\n"),
+                    HasSubstr("baseline: not compared, the scene is not in the baseline: "
+                              "impact/resting-target\n")));
+  write_baseline();
+  const Ended other = carom({"check", "impact/head-on", "--engine", "carom", "--baseline", "base.json"});
+  EXPECT_THAT(other.out, AllOf(HasSubstr("not compared, carom is not in the baseline for: impact/head-on\n"),
+                               HasSubstr("textbook is in the baseline and did not take part in: impact/")));
+  EXPECT_THAT(carom(with({"--baseline", "base.json", "--step", "0.002"})).out,
+              HasSubstr("the step is another"));
+  EXPECT_THAT(carom(with({"--baseline", "base.json", "--seed", "3"})).out, HasSubstr("the seed is another"));
+}
+
+TEST_F(BaselineOption, EngineThatCrashesWhereItHadValues_IsAViolation) {
+  write_baseline();
+  json changed = baseline();
+  changed["scenes"]["impact/head-on"]["engines"]["broken-abort"] = {{"energy", 0.0}};
+  write("base.json", changed.dump());
+  // Not under test beside carom, and a row that is shown; held by the baseline it counts.
+  const Words words = {"check",    "impact/head-on", "--engines-from", CAROM_TEST_ENGINE_DIR,
+                       "--engine", "carom",          "--engine",       "broken-abort"};
+  EXPECT_EQ(carom(words).exit_code, kHolds);
+  Words held = words;
+  held.insert(held.end(), {"--baseline", "base.json"});
+  const Ended ended = carom(held);
+  EXPECT_EQ(ended.exit_code, kViolated);
+  EXPECT_THAT(ended.out, HasSubstr("violated: impact/head-on: broken-abort: crashed"));
+}
+
+TEST_F(BaselineOption, BadFile_IsRefusedWithItsPlace) {
+  const std::string scene = R"({"carom_baseline": 1,
+"scenes": {
+  "a/b": {"sha256": "x", "step": 1, "engines": {
+    "carom": {)";
+  const std::map<std::string, std::string> bad = {
+      {"", "base.json:1: not JSON"},
+      {"[]", "base.json:1: the file: found a list"},
+      {"7", "base.json:1: found no table"},
+      {"{\n\"scenes\": {}}", "base.json:1: carom_baseline: is missing"},
+      {"{\"carom_baseline\": 2, \"scenes\": {}}", "base.json:1: carom_baseline: found 2, allowed: 1"},
+      {"{\"carom_baseline\": 1,\n\"scenes\": 3}", "base.json:2: scenes: found 3, allowed: a table"},
+      {"{\"carom_baseline\": 1,\n\"scenes\": {\n\"a/b\": {}}}", "base.json:3: scenes.a/b.sha256: is missing"},
+      {scene + "\n\"energy\": -1}}}}}",
+       "base.json:5: scenes.a/b.engines.carom.energy: found -1, allowed: a finite"},
+      {scene + "\"speed\": 1}}}}}",
+       "base.json:4: scenes.a/b.engines.carom.speed: unknown key, allowed: energy"},
+      {scene + "\n\"energy\": 1,\n\"energy\": 1}}}}}", "base.json:6: energy: stands twice, line 5"},
+      {scene + "\n\"energy\": 1", "base.json:5: not JSON"},
+  };
+  for (const auto& [text, says] : bad) {
+    write("base.json", text);
+    const Ended ended = carom(with({"--baseline", "base.json", "--write-baseline", "new.json"}));
+    EXPECT_EQ(ended.exit_code, kBadInput) << text;
+    EXPECT_THAT(ended.err, StartsWith("carom: " + says)) << text;
+    EXPECT_FALSE(fs::exists(work_ / "new.json"));
+  }
+  EXPECT_EQ(carom(with({"--baseline", "none.json"})).exit_code, kBadInput);
+  EXPECT_EQ(carom(with({"--baseline-factor", "2"})).exit_code, kBadInput);
+  EXPECT_EQ(carom(with({"--baseline", "base.json", "--baseline-factor", "0.5"})).exit_code, kBadInput);
+}
+
+TEST_F(BaselineOption, BaselineThatCannotBeWritten_IsTheMachinesFault) {
+  write("file", "in the way");
+  EXPECT_EQ(carom(with({"--write-baseline", "file/below"})).exit_code, kMachineFailed);
+}
+
 // --- engines that are broken
 // ---------------------------------------------------------------------------------
 

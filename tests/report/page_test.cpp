@@ -104,9 +104,9 @@ SceneComparison every_verdict() {
   const auto head_on = scene("impact/head-on", 2, 2, Vec3(1, 0.3, 0));
   RunComparison pass = run_of(*head_on, "carom", "faithful", Verdict::pass, 1e-15);
   pass.under_test = true;
-  pass.gates = {{Metric::energy, 1e-9, 1e-15, true}};
+  pass.gates = {{Metric::energy, 1e-9, 1e-15, true, {}}};
   RunComparison fail = run_of(*head_on, "box2d", "faithful", Verdict::fail, 0.01);
-  fail.gates = {{Metric::energy, 1e-4, 0.01, false}};
+  fail.gates = {{Metric::energy, 1e-4, 0.01, false, {}}};
   fail.first_divergence = Divergence{0.5, {0, 1}, Metric::position};
   const RunComparison base = run_of(*head_on, "x", "faithful", Verdict::unsupported);
   RunComparison unsupported = stopped(base, RunStatus::unsupported, "its balls are square");

@@ -116,9 +116,55 @@ TEST(Junit, HasACaseForEachGate_AndItsCountsAreRight) {
 
 TEST(Summary, NamesWhatIsViolated_AndKeepsItsTableWhole) {
   const std::string summary = results_summary(four_verdicts());
-  EXPECT_THAT(summary, HasSubstr("bad: energy = "));
-  EXPECT_THAT(summary, HasSubstr("dead: crashed: killed by signal 11"));
+  EXPECT_THAT(summary, HasSubstr("**2 violated:**"));
+  EXPECT_THAT(summary, HasSubstr("| group/na\\|me | bad | energy | 3"));
+  EXPECT_THAT(summary, HasSubstr("| dead | crashed | killed by signal 11 &lt;here\\> |"));
   EXPECT_THAT(summary, HasSubstr("| group/na\\|me | good | ✅ pass |"));
+}
+
+TEST(Junit, IsXml_WhateverAnEngineSays) {
+  Results results = four_verdicts();
+  results.scenes[0].runs[2].run.reason = "\x1b[31mred\x01 \xff\xc3 \xe2\x82\xac ]]> & <end>";
+  const std::string xml = results_junit(results);
+  EXPECT_THAT(xml, Not(HasSubstr("&#27;")));
+  EXPECT_THAT(xml, Not(HasSubstr("\xff")));
+  EXPECT_THAT(xml, HasSubstr("?[31mred? ?? \xe2\x82\xac ]]&gt; &amp; &lt;end&gt;"));
+}
+
+TEST(Junit, HasOneCaseForAMetric_ThatTheSceneAndTheBaselineLimit) {
+  Results results = four_verdicts();
+  RunComparison& bad = results.scenes[0].runs[1];
+  bad.gates.push_back({Metric::energy, 0.5, 3.0, false, 0.25});
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(results_junit(results).c_str()));
+  EXPECT_EQ(document.child("testsuites").attribute("tests").as_int(), 6);
+  const pugi::xml_node failure = document.select_node("//testcase[failure]").node();
+  EXPECT_STREQ(failure.attribute("classname").value(), "group/na|me.bad");
+  EXPECT_STREQ(failure.attribute("name").value(), "energy");
+  const std::string message = failure.child("failure").attribute("message").value();
+  EXPECT_THAT(message,
+              HasSubstr("above its limit 1e-09; energy = 3 is above 0.5, what its baseline 0.25 allows"));
+  EXPECT_EQ(message, failure.child("failure").text().get());
+  EXPECT_STREQ(failure.child("failure").attribute("type").value(), "gate");
+}
+
+TEST(Summary, IsShort_WhereAllIsWell) {
+  Results results = four_verdicts();
+  results.scenes[0].runs.resize(1);
+  const SceneComparison scene = results.scenes[0];
+  for (int i = 0; i < 70; ++i) results.scenes.push_back(scene);
+  const std::string summary = results_summary(results);
+  const std::string open = summary.substr(0, summary.find("<details>"));
+  EXPECT_LT(std::count(open.begin(), open.end(), '\n'), 10) << open;
+  EXPECT_THAT(open, HasSubstr("Every gate holds: 142 limits in 71 scenes."));
+  EXPECT_THAT(open, HasSubstr("| good | 71 | | | | |"));
+}
+
+TEST(Summary, NothingFromOutside_BecomesMarkup) {
+  Results results = four_verdicts();
+  results.scenes[0].runs[2].run.reason = "a_b _c_ `d` *e* [f](g) <h> &amp; i|j\nk \\";
+  EXPECT_THAT(results_summary(results),
+              HasSubstr(R"(| crashed | a_b \_c\_ \`d\` \*e\* \[f\](g) &lt;h\> &amp;amp; i\|j k \\ | | |)"));
 }
 
 TEST(Table, FitsInto80Columns_AndHasColourOnlyOnRequest) {
