@@ -38,6 +38,11 @@ std::filesystem::path published_file(const std::filesystem::path& web) {
   return web.parent_path() / "measured/published.json";
 }
 
+/// Found out by the same.
+std::filesystem::path catches_file(const std::filesystem::path& web) {
+  return web.parent_path() / "measured/gates.json";
+}
+
 void add_navigation(Node body, const Results& results, const std::filesystem::path& web) {
   add(body, "a", {{"class", "skip"}, {"href", "#overview"}}, "Skip to the results");
   Node bar = add(body, "nav", {{"aria-label", "Parts of this page"}});
@@ -50,6 +55,9 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
   add(bar, "a", {{"href", "#engines"}}, "The engines");
   if (std::filesystem::exists(published_file(web)))
     add(bar, "a", {{"href", "#measured"}}, "Published values");
+  if (std::filesystem::exists(catches_file(web))) {
+    add(bar, "a", {{"href", "#catches"}}, "What the gates catch");
+  }
   if (std::filesystem::exists(costs_file(web))) add(bar, "a", {{"href", "#costs"}}, "What effects cost");
 }
 
@@ -70,6 +78,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
   add_measured(main, published_file(web));
+  add_catches(main, catches_file(web));
   add_costs(main, costs_file(web));
   add_footer(body, results);
   return head(web) + markup(body) + "\n</html>\n";
