@@ -27,12 +27,14 @@ struct ConeProblem {
 /// W_n and W_t being the diagonal of W = BᵀB. (2) says that T ends the slip, or is μ λ against it. Newton's
 /// method on the piecewise smooth equations (1) to (3) of the contacts with λ - w'_n/W_n > 0, the others have
 /// r = 0; a step is halved as often as it takes to lower the sum of squares of what the equations miss, each
-/// times its W. Redundant contacts leave W singular: each solution is drawn to the last one by the share
-/// p of the diagonal, which is nothing where the iteration ends. Source: P. Alart, A. Curnier, "A
-/// mixed formulation for frictional contact problems prone to Newton like solution methods", Comput. Methods
-/// Appl. Mech. Eng. 92, 353 (1991), eqs. (20)-(24); for the damping V. Acary, M. Brémond, O. Huber, "On
-/// solving contact problems with Coulomb friction: formulations and numerical comparisons" (2018), §5. Not
-/// theirs: the radius of (2) is μ λ and not μ (λ - w'_n/W_n), the same where the iteration ends.
+/// times its W. Redundant contacts leave W singular: each solution is drawn to the last one by the share p of
+/// the diagonal, which is nothing where the iteration ends; p rises where no part of a step is of use. Where
+/// that ends too early, whole steps are tried from the start. The method may fail, and then says so. Source:
+/// P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution
+/// methods", Comput. Methods Appl. Mech. Eng. 92, 353 (1991), eqs. (20)-(24); for the damping V. Acary, M.
+/// Brémond, O. Huber, "On solving contact problems with Coulomb friction: formulations and numerical
+/// comparisons" (2018), §5. Not theirs: the radius of (2) is μ λ and not μ (λ - w'_n/W_n), the same where the
+/// iteration ends.
 ///
 /// @param impulse  where to start; replaced by the best that was found
 /// @return whether it solves the problem to rounding
