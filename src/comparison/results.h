@@ -56,8 +56,8 @@ struct Results {
   std::vector<MissingEngine> missing;
   std::vector<SceneComparison> scenes;
   std::vector<CoefficientPanel> coefficients;  ///< empty where they were not measured
-  std::optional<std::uint64_t> seed;         ///< given instead of the scenes' own
-  std::optional<BaselineFindings> baseline;  ///< where there was one to hold against
+  std::optional<std::uint64_t> seed;           ///< given instead of the scenes' own
+  std::optional<BaselineFindings> baseline;    ///< where there was one to hold against
 
   /// Whether every gate holds and every engine under test did what was asked of it.
   bool holds() const {

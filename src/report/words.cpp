@@ -38,7 +38,8 @@ std::string departure(const Scenario& scene, const RunComparison& run) {
   const Judgement& judgement = *run.judgement;
   const std::optional<double>& error_m = run.metrics[Metric::position];
   if (!judgement.beyond_rounding_s) {
-    return fmt::format("off the truth by {} m at most, no more than rounding could explain", short_number(error_m));
+    return fmt::format("off the truth by {} m at most, no more than rounding could explain",
+                       short_number(error_m));
   }
   std::string text = fmt::format("off by more than rounding from t = {} s on, by {} m at most",
                                  short_number(judgement.beyond_rounding_s), short_number(error_m));

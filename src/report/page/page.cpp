@@ -2,6 +2,7 @@
 
 #include "core/files.h"
 #include "report/page/accuracy.h"
+#include "report/page/catches.h"
 #include "report/page/chapters.h"
 #include "report/page/coefficients.h"
 #include "report/page/costs.h"
