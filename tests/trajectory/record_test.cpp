@@ -99,7 +99,7 @@ class BrokenEngine : public testing::TestWithParam<BrokenCase> {};
 
 TEST_P(BrokenEngine, IsARow_AndTheOthersAreAsWithoutIt) {
   const ScenarioPtr scene = two_balls();
-  const ProcessLimits limits{.wall_seconds = 1.0, .memory_mib = 512.0};
+  const ProcessLimits limits{.wall_seconds = 3.0, .memory_mib = 512.0};
   const std::vector<carom::Run> alone = run_engines(*scene, {{free_flight()}}, limits, 2);
   const std::vector<carom::Run> runs =
       run_engines(*scene, {{free_flight()}, {broken(GetParam().engine)}, {free_flight()}}, limits, 2);
