@@ -56,9 +56,9 @@ class CaromEngine final : public Engine {
         "Where balls still chatter after several flights in a step, its rest is taken in one piece, of first "
         "order: "
         "piles that form, and inelastic collapse.",
-        "Rough piles cost several times what smooth ones do while they form. In a crowd the cone of friction "
-        "is met "
-        "as far as a few turns of the solver bring it; openings and energy are not left to that.",
+        "Rough piles of 200 balls cost tens of milliseconds a step while they form. In a crowd friction is "
+        "met as far "
+        "as a few turns of the solver bring it; what overlaps is not left to that.",
         "Friction between balls that lie on each other follows the contacts' normals once a step.",
     };
     info.cannot = {{Feature::events, "carom takes no events yet"}};

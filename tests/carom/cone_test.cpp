@@ -46,8 +46,9 @@ struct RandomCluster {
 
   std::vector<Ball> make_balls() {
     std::vector<Ball> balls;
-    const int count = 2 + static_cast<int>(random.uniform(0.0, 8.0));
-    for (int i = 0; i < count; ++i) {
+    const auto count = static_cast<std::size_t>(2.0 + random.uniform(0.0, 8.0));
+    balls.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
       balls.push_back(ball(std::pow(10.0, random.uniform(0.0, 8.0)), random.uniform(0.5, 2.0), Vec3::Zero()));
     }
     return balls;

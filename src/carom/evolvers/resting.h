@@ -83,7 +83,10 @@ class Resting {
       if (!solve_accelerations()) {
         // Velocities always have a solution.
         begin_flights();
+        const std::vector<std::uint32_t> settled = members();
         join_crowd(seed, time_s);
+        // Who does not join flies freely, and may meet somebody yet.
+        for (const std::uint32_t ball : settled) cluster_.take_in_hit(ball);
         return;
       }
     }
