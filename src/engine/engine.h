@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -108,6 +109,8 @@ struct EngineInfo {
   std::vector<Switch> switches = {};      ///< every setting in which its two profiles differ
 };
 
+/// All of it is in this header: a module of another project (cmake/CaromConfig.cmake.in) links to nothing of
+/// Carom.
 class Engine {
  public:
   Engine() = default;
@@ -131,7 +134,12 @@ class Engine {
   /// The same, with the settings of these names as the engine's other profile has them.
   /// @pre each name is that of one of info().switches; the engine has two profiles.
   virtual std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
-                                                      std::span<const std::string> switched) const;
+                                                      std::span<const std::string> switched) const {
+    if (!switched.empty()) {
+      throw std::logic_error(info().name + " has no setting " + switched.front() + " to switch");
+    }
+    return create(scenario, profile);
+  }
 };
 
 /// Why the engine cannot run the scene: the first missing feature, or what the engine itself refuses; empty
