@@ -15,6 +15,7 @@
 #include "carom/broad_phase/tree.h"
 #include "carom/broad_phase/uniform_grid.h"
 #include "core/random.h"
+#include "tests/benchmarks/least_squares.h"
 
 namespace carom {
 namespace {
@@ -65,24 +66,6 @@ Json work(const Gas<Dim>& balls) {
           {"cell_visits", count.cell_visits()}, {"total", count.total()}};
 }
 
-/// The slope of the straight line through points (x, y) with the least squares of distances along y.
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto count = static_cast<double>(x.size());
-  double mean_x = 0.0;
-  double mean_y = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mean_x += x[i] / count;
-    mean_y += y[i] / count;
-  }
-  double covariance = 0.0;
-  double variance = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    covariance += (x[i] - mean_x) * (y[i] - mean_y);
-    variance += (x[i] - mean_x) * (x[i] - mean_x);
-  }
-  return covariance / variance;
-}
-
 /// The power of the number of balls by which a column of the work grows, to four digits.
 double exponent(const Json& rows, const std::string& column) {
   std::vector<double> log_balls;
@@ -91,7 +74,7 @@ double exponent(const Json& rows, const std::string& column) {
     log_balls.push_back(std::log(row["balls"].get<double>()));
     log_cost.push_back(std::log(row[column].get<double>()));
   }
-  return std::round(1e4 * slope(log_balls, log_cost)) / 1e4;
+  return std::round(1e4 * line_through(log_balls, log_cost).slope) / 1e4;
 }
 
 template <int Dim, template <int, class> class BroadPhase>
