@@ -8,6 +8,7 @@
 #include "report/page/costs.h"
 #include "report/page/html.h"
 #include "report/page/measured.h"
+#include "report/page/orders.h"
 #include "report/page/overview.h"
 #include "report/page/scene_section.h"
 #include "report/page/style.h"
@@ -39,6 +40,11 @@ std::filesystem::path published_file(const std::filesystem::path& web) {
   return web.parent_path() / "measured/published.json";
 }
 
+/// Measured by the same.
+std::filesystem::path orders_file(const std::filesystem::path& web) {
+  return web.parent_path() / "measured/orders.json";
+}
+
 /// Found out by the same.
 std::filesystem::path catches_file(const std::filesystem::path& web) {
   return web.parent_path() / "measured/gates.json";
@@ -56,6 +62,7 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
   add(bar, "a", {{"href", "#engines"}}, "The engines");
   if (std::filesystem::exists(published_file(web)))
     add(bar, "a", {{"href", "#measured"}}, "Published values");
+  if (std::filesystem::exists(orders_file(web))) add(bar, "a", {{"href", "#orders"}}, "Orders");
   if (std::filesystem::exists(catches_file(web))) {
     add(bar, "a", {{"href", "#catches"}}, "What the gates catch");
   }
@@ -79,6 +86,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
   add_measured(main, published_file(web));
+  add_orders(main, orders_file(web));
   add_catches(main, catches_file(web));
   add_costs(main, costs_file(web));
   add_footer(body, results);
