@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -15,7 +14,6 @@ namespace carom::exact {
 
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// An amplification beyond this is not handed out: it nears what a double can hold.
 constexpr double kMostAmplification = 1e300;
 

@@ -3,11 +3,17 @@
 #include <array>
 #include <boost/multiprecision/mpfr.hpp>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "core/vec.h"
 
 namespace carom::exact {
+
+/// Of double, in which bounds are reckoned and the scene's numbers are given.
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// The time of what does not happen.
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// A number with as many decimal digits as the Digits in force say; every operation on it is rounded
 /// correctly to them (MPFR). A double is taken over exactly where they are 17 or more.

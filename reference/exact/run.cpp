@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/random.h"
 
 namespace carom::exact {
 
 namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Half of the digits below one.
 Real half_of_digits(const Digits& digits) {

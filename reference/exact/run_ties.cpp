@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 #include "reference/exact/run.h"
@@ -10,12 +9,6 @@
 // What a run does where impacts come together.
 
 namespace carom::exact {
-
-namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-}  // namespace
 
 /// What the scene's numbers leave open of a distance by now, m. They are decimals that were rounded to
 /// doubles: the places and the radii of two balls, ε/2 of the scale each, and their velocities, ε/2 of the

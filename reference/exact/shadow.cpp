@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace carom::exact {
 
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// The time to come nearer by `way_m`, falling with `fall` towards each other at first at `speed`: the root
 /// of speed t + ½ fall t² = way, in the form in which nothing cancels.

@@ -10,15 +10,11 @@
 #include "comparison/comparison.h"
 #include "comparison/conserved.h"
 #include "comparison/metamorphic.h"
+#include "comparison/predictability.h"
 
 namespace carom {
 
 namespace {
-
-double epsilon_of(const Run& run) {
-  return run.precision == "float32" ? double{std::numeric_limits<float>::epsilon()}
-                                    : std::numeric_limits<double>::epsilon();
-}
 
 double smallest_radius_m(const Scenario& scene) {
   double smallest = std::numeric_limits<double>::infinity();

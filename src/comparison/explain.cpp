@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "comparison/predictability.h"
+
 namespace carom {
 
 namespace {
@@ -216,9 +218,7 @@ std::optional<Metric> telling_metric(const RunComparison& run) {
 
 DivergenceScale divergence_scale(Metric metric, const Scenario& scene, const Truth& truth, const Run& run) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-  const double engine_epsilon =
-      run.precision == "float32" ? double{std::numeric_limits<float>::epsilon()} : kEpsilon;
-  const double rounding = engine_epsilon * static_cast<double>(run.steps);
+  const double rounding = epsilon_of(run) * static_cast<double>(run.steps);
   if (metric != Metric::position && metric != Metric::position_rms) return {kEpsilon, rounding};
   double smallest_m = std::numeric_limits<double>::infinity();
   for (const Ball& ball : scene.balls) smallest_m = std::min(smallest_m, ball.radius);

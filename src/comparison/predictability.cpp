@@ -50,11 +50,6 @@ std::vector<double> most_impacts_of_a_ball(const Truth& truth) {
   return most;
 }
 
-double epsilon_of(const Run& run) {
-  return run.precision == "float32" ? std::numeric_limits<float>::epsilon()
-                                    : std::numeric_limits<double>::epsilon();
-}
-
 /// Least squares y = a + b x.
 struct Slope {
   double b = 0.0;
@@ -83,6 +78,11 @@ std::optional<Slope> slope_of(const std::vector<double>& x, const std::vector<do
 }
 
 }  // namespace
+
+double epsilon_of(const Run& run) {
+  return run.precision == "float32" ? double{std::numeric_limits<float>::epsilon()}
+                                    : std::numeric_limits<double>::epsilon();
+}
 
 std::vector<double> rounding_growth_m(const Scenario& scene, const Truth& truth, double epsilon,
                                       std::int64_t steps) {

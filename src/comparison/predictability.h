@@ -19,6 +19,9 @@ namespace carom {
 ///   double precision) passes the tolerance: ln(tolerance/δ)/λ, read off A itself and not off its fit.
 Predictability predictability_of(const Scenario& scene, const Truth& truth, double tolerance_m);
 
+/// ε of the precision that the run's engine calculates in.
+double epsilon_of(const Run& run);
+
 /// What rounding alone makes of the position error, m, for each frame while the truth is known: an error that
 /// is larger has another cause.
 ///

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "report/json_number.h"
 #include "report/words.h"
 
 namespace carom {
@@ -127,10 +128,6 @@ std::string setting_rows(const ExplainedScene& explained, const SettingEffect& e
 }
 
 using Json = nlohmann::ordered_json;
-
-Json number_or_null(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
 
 Json setting_json(const Settings& settings, const std::string& name) {
   Json json = nullptr;

@@ -1,9 +1,10 @@
 #include "report/json.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <variant>
+
+#include "report/json_number.h"
 
 namespace carom {
 
@@ -11,10 +12,6 @@ namespace {
 
 // Keys in the order in which people read them.
 using Json = nlohmann::ordered_json;
-
-Json number_or_null(std::optional<double> value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
 
 Json vector(const Vec3& v) {
   return {v.x(), v.y(), v.z()};

@@ -6,11 +6,11 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "trajectory/cpu_time.h"
 
 namespace carom {
 
@@ -29,12 +29,6 @@ std::shared_ptr<T[]> shared_array(std::size_t count) {
         fmt::format("no memory for {} MiB of trajectory: {}", bytes >> 20U, std::strerror(errno)));
   }
   return {static_cast<T*>(memory), [bytes](T* start) { munmap(start, bytes); }};
-}
-
-double cpu_now() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 void record_frame(const Simulation& simulation, Trajectory& trajectory, std::size_t frame) {

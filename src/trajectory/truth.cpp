@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "trajectory/cpu_time.h"
 #include "trajectory/record.h"
 
 namespace carom {
@@ -78,12 +78,6 @@ Solution solution_from(const Json& json) {
   }
   for (const Json& row : json.at("ties")) solution.ties.push_back({row.at(0), row.at(1), row.at(2)});
   return solution;
-}
-
-double cpu_now() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// More impacts than this another source is not asked to tell over again.

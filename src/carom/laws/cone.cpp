@@ -28,7 +28,7 @@ constexpr double kProximalStep = 1e6;
 
 /// Of all that impulses add to a velocity, in units of ε: sums over a dozen contacts of a ball and three
 /// axes.
-constexpr double kRoundings = 32.0;
+constexpr double kRoundingsInEpsilon = 32.0;
 
 class Newton {
  public:
@@ -123,7 +123,7 @@ class Newton {
       const VectorXd wanted = wanted_drag(c, impulse);
       const double missing_drag = yield(c) * (drag - wanted).norm();
       const double known =
-          problem_.rounding + kRoundings * kEpsilon * added.segment(normal, axes()).maxCoeff();
+          problem_.rounding + kRoundingsInEpsilon * kEpsilon * added.segment(normal, axes()).maxCoeff();
       sum += missing * missing + missing_drag * missing_drag;
       worst_ = std::max({worst_, std::abs(missing) / known, missing_drag / known});
     }

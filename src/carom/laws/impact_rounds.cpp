@@ -28,9 +28,10 @@ struct Round {
 };
 
 template <int Dim>
-class Cluster {
+class ImpactCluster {
  public:
-  Cluster(World<Dim>& world, std::span<ClosedContact<Dim>> contacts) : world_(world), contacts_(contacts) {
+  ImpactCluster(World<Dim>& world, std::span<ClosedContact<Dim>> contacts)
+      : world_(world), contacts_(contacts) {
     for (ClosedContact<Dim>& contact : contacts) {
       contact.impulse = 0.0;
       balls_.push_back(contact.a);
@@ -157,7 +158,7 @@ class Cluster {
 
 template <int Dim>
 void resolve_in_rounds(World<Dim>& world, std::span<ClosedContact<Dim>> contacts, AtRest at_rest) {
-  Cluster<Dim> cluster(world, contacts);
+  ImpactCluster<Dim> cluster(world, contacts);
   for (int count = 0; count < kMostImpactRounds; ++count) {
     const Round round = cluster.next_round(at_rest);
     if (!round.approaches) return;

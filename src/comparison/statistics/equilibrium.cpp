@@ -12,8 +12,6 @@ namespace carom {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Of each frame every eighth ball is asked, and in the next frame others: what the fixed sum of all energies
 /// takes from the scatter of a sample, which would make p too large, is then an eighth of what it takes from
 /// all balls together, and a ball is asked again only eight frames later.
@@ -57,8 +55,8 @@ class Equilibrium {
     const double distance = kolmogorov_distance(shares, [this](double x) { return law_.cdf(x); });
     const double p = kolmogorov_p(distance, shares.size());
     // The mean and the standard deviation of Kolmogorov's law.
-    const double mean = std::sqrt(kPi / 2.0) * std::numbers::ln2;
-    const double deviation = std::sqrt(kPi * kPi / 12.0 - mean * mean);
+    const double mean = std::sqrt(std::numbers::pi / 2.0) * std::numbers::ln2;
+    const double deviation = std::sqrt(std::numbers::pi * std::numbers::pi / 12.0 - mean * mean);
     const double root = std::sqrt(static_cast<double>(shares.size()));
     return {StatisticKind::speeds, distance,     mean / root,
             deviation / root,      sigmas_of(p), fmt::format("p = {:.2g}, n = {}", p, shares.size())};
@@ -98,7 +96,7 @@ class Equilibrium {
     const double expected = gas_.boxed->wall_force_N / area;
     const auto hits = static_cast<double>(last().wall_impacts - trajectory_.tally(first_).wall_impacts);
     // The pushes of balls that arrive at a wall scatter by 4/π - 1 of their mean's square.
-    const double independent = expected * std::sqrt(4.0 / kPi / std::max(1.0, hits));
+    const double independent = expected * std::sqrt(4.0 / std::numbers::pi / std::max(1.0, hits));
     const double chance = believed(force.error / area, independent);
     return made(StatisticKind::wall_pressure, force.mean / area, expected,
                 std::hypot(chance, gas_.boxed->force_error * expected),

@@ -40,7 +40,7 @@ void add_badge(Node parent, Accuracy accuracy) {
   say(badge, " " + std::string(name_of(accuracy)));
 }
 
-void add_key(Node parent) {
+void add_accuracy_key(Node parent) {
   Node list = add(parent, "ul", {{"class", "key"}, {"aria-label", "Meaning of the words"}});
   for (const Meaning& meaning : kMeanings) {
     Node item = add(list, "li");
@@ -75,7 +75,7 @@ void add_totals(Node parent, const Results& results, const Legend& legend) {
   }
 }
 
-void add_cell(Node row, const SceneComparison& scene, const std::string& label) {
+void add_accuracy_cell(Node row, const SceneComparison& scene, const std::string& label) {
   const auto run = std::find_if(scene.runs.begin(), scene.runs.end(),
                                 [&](const RunComparison& each) { return each.run.label() == label; });
   if (run == scene.runs.end() || !run->judgement) {
@@ -93,7 +93,7 @@ void add_cell(Node row, const SceneComparison& scene, const std::string& label) 
   }
 }
 
-void add_matrix(Node parent, const Results& results, const Legend& legend) {
+void add_accuracy_matrix(Node parent, const Results& results, const Legend& legend) {
   std::vector<Heading> headings = {{"scene", ""}, {"truth", ""}};
   for (const std::string& label : legend.labels()) headings.push_back({label, ""});
   Node body = add_table(parent, "matrix", "How right each engine is, scene by scene", headings);
@@ -103,7 +103,7 @@ void add_matrix(Node parent, const Results& results, const Legend& legend) {
     Node name = add(row, "th", {{"scope", "row"}});
     add(name, "a", {{"href", "#" + anchor_of(*scene.scene)}}, scene.scene->title);
     add(row, "td", {}, scene.truth.kind);
-    for (const std::string& label : legend.labels()) add_cell(row, scene, label);
+    for (const std::string& label : legend.labels()) add_accuracy_cell(row, scene, label);
   }
 }
 
@@ -168,9 +168,9 @@ void add_accuracy(Node parent, const Results& results, const Legend& legend) {
   Node section = add(parent, "section", {{"id", "accuracy"}, {"aria-labelledby", "accuracy-title"}});
   add(section, "h2", {{"id", "accuracy-title"}}, "Against the truth: who is right");
   add(section, "p", {{"class", "note"}}, kNote);
-  add_key(section);
+  add_accuracy_key(section);
   add_totals(section, results, legend);
-  add_matrix(section, results, legend);
+  add_accuracy_matrix(section, results, legend);
   add_truths(section, results);
 }
 

@@ -14,10 +14,10 @@ namespace carom::page {
 
 namespace {
 
-constexpr double kWidth_px = 330.0;
-constexpr double kHeight_px = 190.0;
+constexpr double kPanelWidth_px = 330.0;
+constexpr double kPanelHeight_px = 190.0;
 constexpr int kSpeedTicks = 5;
-constexpr int kValueTicks = 6;
+constexpr int kDeliveredTicks = 6;
 // An engine that delivers within this of what was asked for does what it says: a hundred roundings of single
 // precision.
 constexpr double kAsAsked = 1e-5;
@@ -31,7 +31,7 @@ const char* symbol_of(Coefficient coefficient) {
 }
 
 /// "e of a ball on a wall, asked for 0.5"
-std::string title_of(const CoefficientPanel& panel) {
+std::string panel_title(const CoefficientPanel& panel) {
   return fmt::format("{} of a ball on a {}, {} asked for", symbol_of(panel.coefficient),
                      panel.wall ? "wall" : "ball", given(panel.nominal));
 }
@@ -118,15 +118,16 @@ std::string finding_text(const CoefficientPanel& panel) {
 }
 
 void add_panel(Node parent, const CoefficientPanel& panel, const Legend& legend) {
-  const std::string title = title_of(panel);
+  const std::string title = panel_title(panel);
   const std::string finding = finding_text(panel);
   Node figure = add(parent, "figure", {{"class", "plot"}});
   Node caption = add(figure, "figcaption");
   add(caption, "strong", {}, title + ".");
   say(caption, " " + finding);
-  const Canvas canvas = add_canvas(figure, {title, finding}, speed_axis(panel), axis_of(panel), kWidth_px,
-                                   kHeight_px, {kSpeedTicks, "speed of the approach, m/s, as a power of ten"},
-                                   {kValueTicks, std::string(symbol_of(panel.coefficient)) + " delivered"});
+  const Canvas canvas =
+      add_canvas(figure, {title, finding}, speed_axis(panel), axis_of(panel), kPanelWidth_px, kPanelHeight_px,
+                 {kSpeedTicks, "speed of the approach, m/s, as a power of ten"},
+                 {kDeliveredTicks, std::string(symbol_of(panel.coefficient)) + " delivered"});
   const double asked = canvas.at(0.0, panel.nominal).y;
   add(canvas.area, "path", {{"class", "rule"}, {"d", fmt::format("M0 {}h{}", px(asked), px(canvas.width))}});
   for (const CoefficientCurve& curve : panel.curves) {
@@ -136,7 +137,7 @@ void add_panel(Node parent, const CoefficientPanel& panel, const Legend& legend)
 
 /// "0.5", or "0.54 (0.02 to 0.66)" where it hangs on the phase of the step.
 std::string words_of(const Delivered& got) {
-  const std::string value = number(got.value);
+  std::string value = number(got.value);
   if (got.highest - got.lowest <= kAsAsked) return value;
   return fmt::format("{} ({} to {})", value, number(got.lowest), number(got.highest));
 }
@@ -144,7 +145,7 @@ std::string words_of(const Delivered& got) {
 void add_values(Node parent, const CoefficientPanel& panel) {
   std::vector<Heading> headings = {{"engine", ""}};
   for (const double speed_mps : panel.speeds_mps) headings.push_back({number(speed_mps) + " m/s", "number"});
-  Node body = add_table(parent, "", title_of(panel), headings);
+  Node body = add_table(parent, "", panel_title(panel), headings);
   for (const CoefficientCurve& curve : panel.curves) {
     Node row = add(body, "tr");
     add(row, "th", {{"scope", "row"}}, curve.label);

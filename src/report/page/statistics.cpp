@@ -14,8 +14,8 @@ namespace carom::page {
 
 namespace {
 
-constexpr double kPlotWidth_px = 330.0;
-constexpr double kPlotHeight_px = 190.0;
+constexpr double kSpeedsWidth_px = 330.0;
+constexpr double kSpeedsHeight_px = 190.0;
 
 std::string title_of(StatisticKind kind) {
   switch (kind) {
@@ -152,7 +152,7 @@ void add_speeds(Node parent, const SceneComparison& scene, const Legend& legend)
   const double fastest = asked.cell_width * static_cast<double>(asked.speed_density.size());
   const Canvas canvas = add_canvas(
       figure, {"Speeds", "The share of balls by their speed, for each engine, with the exact law."},
-      Axis::linear(0.0, fastest), Axis::linear(0.0, high), kPlotWidth_px, kPlotHeight_px,
+      Axis::linear(0.0, fastest), Axis::linear(0.0, high), kSpeedsWidth_px, kSpeedsHeight_px,
       {5, "speed by √(T/m)"}, {5, "density"});
   add(canvas.area, "path",
       {{"class", "truth"}, {"d", path_data(line_of(canvas, asked, asked.speed_density))}});
