@@ -32,6 +32,7 @@ void copy_members(Setup& to, const Setup& from) {
 template <class Setup, std::size_t n>
 std::vector<Switch> switches_of(const std::array<SetupSwitch<Setup>, n>& table) {
   std::vector<Switch> switches;
+  switches.reserve(n);
   for (const SetupSwitch<Setup>& row : table)
     switches.push_back({std::string(row.name), std::string(row.meaning)});
   return switches;

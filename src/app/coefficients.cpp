@@ -6,6 +6,7 @@ std::vector<CoefficientPanel> measure_coefficients(const std::vector<EngineChoic
                                                    const ProcessLimits& limits, int parallel) {
   const std::vector<CoefficientProbe> probes = coefficient_probes();
   std::vector<std::string> labels;
+  labels.reserve(engines.size());
   for (const EngineChoice& engine : engines)
     labels.push_back(engine_label(engine.source.name, engine.profile));
   std::vector<CoefficientPanel> panels = empty_panels(probes, labels);

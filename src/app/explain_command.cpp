@@ -87,6 +87,7 @@ class Laboratory {
                 const ScenarioPtr& scene, Metric metric, std::vector<std::optional<double>>& values,
                 Progress& progress) const {
     std::vector<EngineChoice> choices;
+    choices.reserve(which.size());
     for (const std::size_t i : which) {
       choices.push_back({engine_.source, engine_.profile, trials[i].switched});
     }

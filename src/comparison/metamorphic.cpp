@@ -46,7 +46,7 @@ void see_solids(const Frame& frame, Scenario& scene) {
     // The box's walls are the first, in the order of the axes.
     scene.box = seen_box(frame, *scene.box);
     for (int axis = 0; axis < scene.dimension; ++axis) {
-      const auto at = static_cast<std::size_t>(2 * axis);
+      const auto at = 2 * static_cast<std::size_t>(axis);
       scene.walls[at] = {Vec3::Unit(axis), scene.box->min[axis]};
       scene.walls[at + 1] = {-Vec3::Unit(axis), -scene.box->max[axis]};
     }

@@ -55,7 +55,7 @@ class Crowd {
 
   /// What the last impact changed of the members' kinetic energy, J: since each of them had the velocity with
   /// which it entered.
-  double energy_change_J() const { return energy_change_J_; }
+  double energy_change() const { return energy_change_J_; }
 
   /// Whether the last impact was more than what fields give in a step.
   bool had_impact() const { return impact_; }
@@ -78,7 +78,7 @@ class Crowd {
       }
     }
     if (!solved) solve();
-    for (const std::uint32_t ball : cluster_.members()) energy_change_J_ += kinetic_energy_J(ball);
+    for (const std::uint32_t ball : cluster_.members()) energy_change_J_ += kinetic_energy(ball);
     for (const Kept& contact : solver_.contacts()) {
       const Bearing bearing = {side_of(contact) * impulse_of(contact), time_s};
       bearing_[contact_key(contact.a, contact.b, contact.wall)] = bearing;
@@ -134,7 +134,7 @@ class Crowd {
     return [&world](std::uint32_t ball) { return world.inverse_mass[ball]; };
   }
 
-  double kinetic_energy_J(std::uint32_t ball) const {
+  double kinetic_energy(std::uint32_t ball) const {
     double energy_J = 0.5 * world().velocity[ball].squaredNorm() / world().inverse_mass[ball];
     if constexpr (kFriction) {
       energy_J += 0.5 * world().spin[ball].squaredNorm() / world().inverse_inertia[ball];
@@ -145,7 +145,7 @@ class Crowd {
   /// Until they are pushed, new members have the velocity with which they enter.
   void note_energy_of_new_members() {
     while (entered_ < cluster_.members().size()) {
-      energy_change_J_ -= kinetic_energy_J(cluster_.members()[entered_++]);
+      energy_change_J_ -= kinetic_energy(cluster_.members()[entered_++]);
     }
   }
 

@@ -102,7 +102,7 @@ class Resting {
     grips_.clear();
     crowd_.join(seed, time_s);
     EnergyAccount& energy = flights_.account().tally.energy;
-    (only_outside() ? energy.wall_impacts_J : energy.ball_impacts_J) += crowd_.energy_change_J();
+    (only_outside() ? energy.wall_impacts_J : energy.ball_impacts_J) += crowd_.energy_change();
     if (crowd_.had_impact()) ++flights_.account().tally.impacts;
     for (const std::uint32_t ball : members()) flights_.coast(ball);
     crowd_.for_each_impulse([this](const Kept& contact, const Vec<Dim>& impulse) {

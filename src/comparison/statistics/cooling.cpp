@@ -11,7 +11,7 @@ namespace {
 constexpr double kFirstCollisions = 5.0;
 constexpr double kColdest = 0.1;
 
-double kinetic_energy_J(const Scenario& scene, std::span<const BallState> balls) {
+double kinetic_energy(const Scenario& scene, std::span<const BallState> balls) {
   double sum = 0.0;
   for (std::size_t i = 0; i < balls.size(); ++i) {
     sum += 0.5 * scene.balls[i].mass * balls[i].velocity.squaredNorm();
@@ -47,7 +47,7 @@ void measure_cooling(const Gas& gas, const Trajectory& trajectory, RunStatistics
     const double expected = 1.0 / ((1.0 + cooling * t) * (1.0 + cooling * t));
     if (collisions_per_ball < kFirstCollisions) continue;
     if (expected < kColdest) break;
-    const double value = kinetic_energy_J(*gas.scene, trajectory.frame(k)) / gas.energy_J;
+    const double value = kinetic_energy(*gas.scene, trajectory.frame(k)) / gas.energy_J;
     const double collisions = 0.5 * static_cast<double>(gas.balls) * collisions_per_ball;
     const double lost = -std::log(expected);
     const double allowance = expected * lost * std::hypot(std::sqrt(2.0 / collisions), theory);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace carom::fluid {
@@ -29,15 +30,16 @@ struct Room {
   double surface = 0.0;
 
   Room(int dimension, const std::array<double, 3>& box_m, double diameter_m) {
-    for (int i = 0; i < dimension; ++i) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
       sides_m[i] = box_m[i] - diameter_m;
       volume *= sides_m[i];
     }
-    for (int i = 0; i < dimension; ++i) surface += 2.0 * volume / sides_m[i];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i)
+      surface += 2.0 * volume / sides_m[i];
   }
 
   /// ∂A/∂ℓ_i: the faces that are not across i grow with ℓ_i.
-  double surface_slope(int i) const { return (surface - 2.0 * volume / sides_m[i]) / sides_m[i]; }
+  double surface_slope(std::size_t i) const { return (surface - 2.0 * volume / sides_m[i]) / sides_m[i]; }
 };
 
 /// (5) and (6) with γ times a factor.
@@ -84,7 +86,7 @@ struct Forces {
 
 Forces forces_of(int dimension, const Room& room, const Solution& solution) {
   Forces forces;
-  for (int i = 0; i < dimension; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
     const double side = room.sides_m[i];
     const double force =
         solution.pressure() * room.volume / side - solution.tension() * room.surface_slope(i);
