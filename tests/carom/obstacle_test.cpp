@@ -422,7 +422,7 @@ class BarriersUnderGravity : public testing::TestWithParam<int> {
 
   /// What rounding may add up to: each step and each impact rounds each ball's energy a few times, which is
   /// at most its share of what all have against the floor.
-  static double rounding_J(const Scenario& scene, double roundings) {
+  static double rounding_of_energy(const Scenario& scene, double roundings) {
     double scale = 0.0;
     for (const Ball& ball : scene.balls) {
       scale += ball.mass * (0.5 * ball.velocity.squaredNorm() + scene.effects.gravity->norm() * 4.0);
@@ -439,7 +439,7 @@ TEST_P(BarriersUnderGravity, KeepTheEnergy_WhereverBallsPass) {
     const auto states = run(*simulation, scene, 500);
     const auto impacts = static_cast<double>(simulation->tally().impacts);
     EXPECT_NEAR(energy_of(scene, states), energy_of(scene, states_of(scene)),
-                rounding_J(scene, 500.0 + impacts));
+                rounding_of_energy(scene, 500.0 + impacts));
     int passed = 0;
     for (std::size_t i = 0; i < states.size(); ++i) {
       const Vec3& normal = scene.barriers[0].normal;
@@ -467,7 +467,7 @@ TEST_P(BarriersUnderGravity, NeverGainEnergy_WithLossyWalls) {
     for (int k = 0; k < 500; ++k) {
       simulation->advance(0.01, 1);
       const double now = energy_of(scene, states_of(*simulation, scene.balls.size()));
-      ASSERT_LE(now, last + rounding_J(scene, 4.0)) << "step " << k;
+      ASSERT_LE(now, last + rounding_of_energy(scene, 4.0)) << "step " << k;
       last = now;
     }
   }

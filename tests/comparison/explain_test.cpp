@@ -20,6 +20,7 @@ constexpr DivergenceScale kScale{1e-15, 1e-12};
 
 std::vector<Switch> switches(int count) {
   std::vector<Switch> all;
+  all.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) all.push_back({std::string(1, static_cast<char>('a' + i)), ""});
   return all;
 }
@@ -32,6 +33,7 @@ bool has(const Trial& trial, const std::string& name) {
 RunTrials engine_of(std::function<std::optional<double>(const Trial&)> divergence) {
   return [divergence = std::move(divergence)](const std::vector<Trial>& trials) {
     std::vector<std::optional<double>> all;
+    all.reserve(trials.size());
     for (const Trial& trial : trials) all.push_back(divergence(trial));
     return all;
   };
@@ -137,6 +139,7 @@ TEST(Explain, Trials_NameSwitchesInTheEnginesOrder) {
   explain(switches(4), kScale, [&](const std::vector<Trial>& trials) {
     seen.insert(seen.end(), trials.begin(), trials.end());
     std::vector<std::optional<double>> values;
+    values.reserve(trials.size());
     for (const Trial& trial : trials)
       values.emplace_back(1.0 / static_cast<double>(1 + trial.switched.size()));
     return values;

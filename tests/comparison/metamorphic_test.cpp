@@ -218,8 +218,8 @@ struct Refusal {
   const char* reason;  ///< empty: it applies
 };
 
-void PrintTo(const Refusal& refusal, std::ostream* out) {
-  *out << refusal.name;
+std::ostream& operator<<(std::ostream& out, const Refusal& refusal) {
+  return out << refusal.name;
 }
 
 class NotSymmetric : public testing::TestWithParam<Refusal> {};
