@@ -95,6 +95,7 @@ double deviations(const RunStatistics& statistics, StatisticKind kind) {
 
 TEST(Kolmogorov, Distance_IsThatOfAGrid_WhenTheSampleIsOne) {
   std::vector<double> grid;
+  grid.reserve(50);
   for (int i = 0; i < 50; ++i) grid.push_back((i + 0.5) / 50.0);
   const auto uniform = [](double x) { return x; };
   EXPECT_NEAR(kolmogorov_distance(grid, uniform), 0.01, 1e-15);
@@ -165,6 +166,7 @@ TEST(EnergyShare, IsTheLawOfPointsOnASphere_ForFewBalls) {
 
 TEST(TimeMean, Error_IsThatOfTheSpans) {
   std::vector<double> series;
+  series.reserve(103);
   for (int i = 0; i < 103; ++i)
     series.push_back(i < 3 ? 1e6 : (i - 3) / 10);  // ten spans 0 … 9, a rest in front
   const TimeMean mean = time_mean(series);

@@ -294,6 +294,7 @@ TEST(ExactPolynomial, FindsAllZeros_UpToDegreeFour) {
   Random random(6);
   for (int n = 0; n < 200; ++n) {
     std::vector<double> zeros;
+    zeros.reserve(static_cast<std::size_t>(1 + n % 4));
     for (int k = 0; k < 1 + n % 4; ++k) zeros.push_back(random.uniform(-1.0, 3.0));
     const std::vector<Real> powers = with_zeros(zeros, random.uniform(-2.0, 2.0));
     std::sort(zeros.begin(), zeros.end());

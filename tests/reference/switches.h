@@ -73,7 +73,8 @@ inline std::vector<std::string> one_switched_moves_others(const Engine& engine) 
     if (from.at(name) == to.at(name)) wrong.push_back(name + " is the same in both profiles");
     if (now.at(name) != to.at(name)) wrong.push_back(name + " does not switch");
     for (const std::string& other : names) {
-      if (other != name && now.at(other) != from.at(other)) wrong.push_back(name + " switches " + other);
+      if (other != name && now.at(other) != from.at(other))
+        wrong.push_back(std::string(name).append(" switches ").append(other));
     }
   }
   return wrong;
