@@ -7,6 +7,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -49,9 +50,14 @@ class Counting {
 struct Node {
   std::string key;
   int line = 1;
-  Json value;  ///< null for a table
+  std::shared_ptr<const Json> held;  ///< nothing for a table; by pointer, so that nodes move without a throw
   bool is_table = false;
   std::vector<Node> children;
+
+  const Json& value() const {
+    static const Json none;
+    return held ? *held : none;
+  }
 };
 
 /// Builds the tree of nodes while the text is parsed. A baseline has tables, texts and numbers.
@@ -107,7 +113,7 @@ class TreeBuilder {
 
  private:
   bool take(Json value) {
-    next().value = std::move(value);
+    next().held = std::make_shared<const Json>(std::move(value));
     return true;
   }
   /// Where the value that comes now belongs. A vector of children grows only while it is the last on the
@@ -137,7 +143,7 @@ class Interpreter {
     if (!root.is_table) fail(root, "", "found no table, allowed: what carom check --write-baseline writes");
     allow(root, "", {"carom_baseline", "scenes"});
     const Node& format = required(root, "", "carom_baseline");
-    if (format.value != kFormat) fail_value(format, "carom_baseline", std::to_string(kFormat));
+    if (format.value() != kFormat) fail_value(format, "carom_baseline", std::to_string(kFormat));
     Baseline baseline;
     baseline.file = file_;
     const Node& scenes = required(root, "", "scenes");
@@ -152,7 +158,7 @@ class Interpreter {
     throw InputError(fmt::format("{}:{}: {}{}{}", file_, node.line, path, path.empty() ? "" : ": ", problem));
   }
   [[noreturn]] void fail_value(const Node& node, const std::string& path, const std::string& allowed) const {
-    const std::string found = node.is_table ? "a table" : node.value.dump();
+    const std::string found = node.is_table ? "a table" : node.value().dump();
     fail(node, path, fmt::format("found {}, allowed: {}", found, allowed));
   }
 
@@ -185,8 +191,8 @@ class Interpreter {
   }
 
   double number(const Node& node, const std::string& path) const {
-    if (!node.value.is_number()) fail_value(node, path, "a finite number >= 0");
-    const auto value = node.value.get<double>();
+    if (!node.value().is_number()) fail_value(node, path, "a finite number >= 0");
+    const auto value = node.value().get<double>();
     if (!std::isfinite(value) || value < 0.0) fail_value(node, path, "a finite number >= 0");
     return value;
   }
@@ -195,12 +201,12 @@ class Interpreter {
     allow(node, path, {"sha256", "step", "seed", "engines"});
     BaselineScene scene;
     const Node& sha256 = required(node, path, "sha256");
-    if (!sha256.value.is_string()) fail_value(sha256, path + ".sha256", "a text");
-    scene.sha256 = sha256.value;
+    if (!sha256.value().is_string()) fail_value(sha256, path + ".sha256", "a text");
+    scene.sha256 = sha256.value();
     scene.step_s = number(required(node, path, "step"), path + ".step");
     if (const Node* seed = find(node, "seed")) {
-      if (!seed->value.is_number_unsigned()) fail_value(*seed, path + ".seed", "a whole number >= 0");
-      scene.seed = seed->value.get<std::uint64_t>();
+      if (!seed->value().is_number_unsigned()) fail_value(*seed, path + ".seed", "a whole number >= 0");
+      scene.seed = seed->value().get<std::uint64_t>();
     }
     for (const Node& engine : table(required(node, path, "engines"), path + ".engines")) {
       scene.engines[engine.key] = metrics(engine, path + ".engines." + engine.key);
