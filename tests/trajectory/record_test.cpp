@@ -121,7 +121,7 @@ std::vector<BrokenCase> broken_cases() {
       {"broken-abort", RunStatus::crashed, "Assertion `mass > 0' failed"},
       {"broken-exit", RunStatus::crashed, "without a result"},
       {"broken-throw", RunStatus::crashed, "an unknown exception"},
-      {"broken-hang", RunStatus::timeout, "stopped after 1 s"},
+      {"broken-hang", RunStatus::timeout, "stopped after 3 s"},
       {"broken-nan", RunStatus::invalid, "ball 1 is not finite at t = 0.1"},
       {"broken-silent", RunStatus::invalid, "ball 1 is not finite at t = 0"},
       {"no-such-module", RunStatus::crashed, "cannot load engine"},
