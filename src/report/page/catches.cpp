@@ -26,7 +26,7 @@ void add_row(Node body, const Json& row) {
   add_number(line, number(row.at("limit").get<double>()));
 }
 
-void add_all(Node section, const Json& catches) {
+void add_defects(Node section, const Json& catches) {
   add(section, "p", {{"class", "about"}},
       "A gate that nothing can violate is worth nothing. These engines are broken on purpose: one plain "
       "engine, "
@@ -52,7 +52,7 @@ void add_catches(Node parent, const std::filesystem::path& file) {
   Node section = add(parent, "section", {{"id", "catches"}, {"aria-labelledby", "catches-title"}});
   add(section, "h2", {{"id", "catches-title"}}, "What the gates catch");
   try {
-    add_all(section, Json::parse(read_file(file)).at("catches"));
+    add_defects(section, Json::parse(read_file(file)).at("catches"));
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: {}; tests/benchmarks/run writes it anew", file.string(), error.what()));
   }
