@@ -109,7 +109,7 @@ struct EngineInfo {
   std::vector<Switch> switches = {};      ///< every setting in which its two profiles differ
 };
 
-/// All of it is in this header: a module of another project (cmake/CaromConfig.cmake.in) links to nothing of
+/// All of it is in this header: a module of another project (src/CaromConfig.cmake.in) links to nothing of
 /// Carom.
 class Engine {
  public:
