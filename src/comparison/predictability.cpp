@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/least_squares.h"
+
 namespace carom {
 
 namespace {
@@ -50,33 +52,6 @@ std::vector<double> most_impacts_of_a_ball(const Truth& truth) {
   return most;
 }
 
-/// Least squares y = a + b x.
-struct Slope {
-  double b = 0.0;
-  double r_squared = 0.0;
-};
-
-std::optional<Slope> slope_of(const std::vector<double>& x, const std::vector<double>& y) {
-  if (x.size() < 3) return std::nullopt;
-  const auto n = static_cast<double>(x.size());
-  double mean_x = 0.0;
-  double mean_y = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mean_x += x[i] / n;
-    mean_y += y[i] / n;
-  }
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    xy += (x[i] - mean_x) * (y[i] - mean_y);
-    yy += (y[i] - mean_y) * (y[i] - mean_y);
-  }
-  if (xx == 0.0 || yy == 0.0) return std::nullopt;
-  return Slope{xy / xx, xy * xy / (xx * yy)};
-}
-
 }  // namespace
 
 double epsilon_of(const Run& run) {
@@ -116,9 +91,14 @@ Predictability predictability_of(const Scenario& scene, const Truth& truth, doub
     times.push_back(truth.trajectory.time(k));
     logarithms.push_back(std::log(amplification[k]));
   }
-  if (const std::optional<Slope> slope = slope_of(times, logarithms)) {
-    result.growth_rate_per_s = slope->b;
-    result.growth_r_squared = slope->r_squared;
+  constexpr std::size_t kFewest = 3;  // two points always lie on a line
+  const bool spread =
+      logarithms.size() >= kFewest && std::any_of(logarithms.begin(), logarithms.end(),
+                                                  [&](double value) { return value != logarithms.front(); });
+  if (spread) {
+    const FittedLine line = line_through(times, logarithms);
+    result.growth_rate_per_s = line.slope;
+    result.growth_r_squared = line.r_squared;
   }
   const std::vector<double> growth =
       rounding_growth_m(scene, truth, std::numeric_limits<double>::epsilon(), 0);

@@ -14,8 +14,8 @@
 #include "carom/broad_phase/sort_and_sweep.h"
 #include "carom/broad_phase/tree.h"
 #include "carom/broad_phase/uniform_grid.h"
+#include "core/least_squares.h"
 #include "core/random.h"
-#include "tests/benchmarks/least_squares.h"
 
 namespace carom {
 namespace {

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "carom/compose.h"
+#include "core/least_squares.h"
 #include "reference/closed_form/closed_form.h"
 #include "scenario/parse.h"
-#include "tests/benchmarks/least_squares.h"
 
 namespace carom {
 
@@ -102,7 +102,7 @@ void fit(Convergence& result) {
     log_step.push_back(std::log(error.step_s));
     log_error.push_back(std::log(error.error_m));
   }
-  const Line line = line_through(log_step, log_error);
+  const FittedLine line = line_through(log_step, log_error);
   result.order = line.slope;
   result.r_squared = line.r_squared;
 }

@@ -5,14 +5,14 @@
 
 namespace carom {
 
-struct Line {
+struct FittedLine {
   double slope = 0.0;
   double r_squared = 0.0;  ///< share of the variance of y that the line explains, 0 … 1
 };
 
 /// The straight line through points (x, y) with the least squares of distances along y.
 /// @pre not all x are equal, nor all y
-inline Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
+inline FittedLine line_through(const std::vector<double>& x, const std::vector<double>& y) {
   const auto count = static_cast<double>(x.size());
   double mean_x = 0.0;
   double mean_y = 0.0;
