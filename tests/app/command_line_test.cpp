@@ -737,7 +737,7 @@ class BaselineOption : public CommandLine {
                    "--engines-from",
                    CAROM_TEST_ENGINE_DIR,
                    "--engine",
-                   "textbook",
+                   "plain",
                    "--json",
                    "results.json"};
     words.insert(words.end(), more.begin(), more.end());
@@ -752,26 +752,26 @@ TEST_F(BaselineOption, WrittenAndHeldAgainst_Holds) {
   const json scene = baseline().at("scenes").at("impact/head-on");
   EXPECT_EQ(scene.at("step"), 0.004);
   EXPECT_EQ(scene.at("sha256").get<std::string>().size(), 64U);
-  EXPECT_TRUE(scene.at("engines").at("textbook").contains("momentum"));
+  EXPECT_TRUE(scene.at("engines").at("plain").contains("momentum"));
   const Ended ended = carom(with({"--baseline", "base.json"}));
   EXPECT_EQ(ended.exit_code, kHolds);
   EXPECT_THAT(ended.out, AllOf(HasSubstr("of them made from base.json"), Not(HasSubstr("baseline:"))));
-  EXPECT_EQ(from_baseline(runs().at(0)).size(), scene.at("engines").at("textbook").size());
+  EXPECT_EQ(from_baseline(runs().at(0)).size(), scene.at("engines").at("plain").size());
 }
 
 /// The value 0.5 of the loss at rest was 0.2 once: worse by 2.5.
 TEST_F(BaselineOption, WorseValue_IsAViolationEverywhere) {
   write_baseline();
   json changed = baseline();
-  changed["scenes"]["impact/resting-target"]["engines"]["textbook@velocity-threshold"] = {{"energy", 0.2}};
+  changed["scenes"]["impact/resting-target"]["engines"]["plain@velocity-threshold"] = {{"energy", 0.2}};
   write("base.json", changed.dump());
-  const Words engine = {"--engine", "textbook@velocity-threshold", "--baseline", "base.json"};
+  const Words engine = {"--engine", "plain@velocity-threshold", "--baseline", "base.json"};
   Words words = with(engine);
   words.insert(words.end(), {"--junit", "junit.xml", "--summary", "summary.md"});
   const Ended ended = carom(words);
   EXPECT_EQ(ended.exit_code, kViolated);
   const std::string says = "energy = 0.5 is above 0.4, what its baseline 0.2 allows";
-  EXPECT_THAT(ended.out, HasSubstr("violated: impact/resting-target: textbook@velocity-threshold: " + says));
+  EXPECT_THAT(ended.out, HasSubstr("violated: impact/resting-target: plain@velocity-threshold: " + says));
   const std::vector<json> gates = from_baseline(scenes().at(1).at("runs").at(1));
   ASSERT_EQ(gates.size(), 1U);
   EXPECT_EQ(gates[0].at("baseline"), 0.2);
@@ -786,15 +786,15 @@ TEST_F(BaselineOption, WorseValue_IsAViolationEverywhere) {
 TEST_F(BaselineOption, BetterValue_IsOffered_AndTakenOver) {
   write_baseline();
   json changed = baseline();
-  changed["scenes"]["impact/head-on"]["engines"]["textbook"]["position"] = 1e-3;
+  changed["scenes"]["impact/head-on"]["engines"]["plain"]["position"] = 1e-3;
   changed["scenes"]["another/scene"] = changed["scenes"]["impact/head-on"];
   write("base.json", changed.dump());
   const Ended ended = carom(with({"--quiet", "--baseline", "base.json", "--write-baseline", "base.json"}));
   EXPECT_EQ(ended.exit_code, kHolds);
   EXPECT_THAT(ended.out,
-              AllOf(StartsWith("baseline: better than the baseline: impact/head-on textbook position"),
+              AllOf(StartsWith("baseline: better than the baseline: impact/head-on plain position"),
                     HasSubstr("(was 0.001); carom check … --baseline base.json --write-baseline")));
-  EXPECT_LT(baseline().at("scenes").at("impact/head-on").at("engines").at("textbook").at("position"), 1e-9);
+  EXPECT_LT(baseline().at("scenes").at("impact/head-on").at("engines").at("plain").at("position"), 1e-9);
   // What did not take part is kept.
   EXPECT_TRUE(baseline().at("scenes").contains("another/scene"));
 }
@@ -815,7 +815,7 @@ TEST_F(BaselineOption, WhatCannotBeCompared_IsSaid) {
   write_baseline();
   const Ended other = carom({"check", "impact/head-on", "--engine", "carom", "--baseline", "base.json"});
   EXPECT_THAT(other.out, AllOf(HasSubstr("not compared, carom is not in the baseline for: impact/head-on\n"),
-                               HasSubstr("textbook is in the baseline and did not take part in: impact/")));
+                               HasSubstr("plain is in the baseline and did not take part in: impact/")));
   EXPECT_THAT(carom(with({"--baseline", "base.json", "--step", "0.002"})).out,
               HasSubstr("the step is another"));
   EXPECT_THAT(carom(with({"--baseline", "base.json", "--seed", "3"})).out, HasSubstr("the seed is another"));

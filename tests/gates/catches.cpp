@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kEngine = "textbook";
+constexpr std::string_view kEngine = "plain";
 
 /// The runs of one scene, as `carom check --json` writes them.
 Json checked(const std::filesystem::path& modules, const std::string& scene,

@@ -11,7 +11,7 @@
 
 namespace carom::gates {
 
-/// Which gate must catch which broken engine (tests/engines/textbook/defects.cpp): one for each, the one
+/// Which gate must catch which broken engine (tests/engines/plain/defects.cpp): one for each, the one
 /// whose business it is.
 struct Catcher {
   std::string_view defect;
@@ -55,7 +55,7 @@ inline constexpr std::array kCatchers = {
 
 /// What a run of `carom check` said of a broken engine in the scene and metric of its catcher.
 struct Catch {
-  std::string engine;  ///< textbook@<defect>
+  std::string engine;  ///< plain@<defect>
   std::string broken;  ///< what is broken
   std::string scene;
   std::string metric;
@@ -64,9 +64,9 @@ struct Catch {
   bool caught = false;  ///< the gate is there, and does not hold
 };
 
-/// Runs `carom check` with every broken engine of the textbook module in the scene that must catch it. A
+/// Runs `carom check` with every broken engine of the plain module in the scene that must catch it. A
 /// broken engine that no row of kCatchers names comes without a scene, and is not caught.
-/// @param modules  the folder of the textbook module
+/// @param modules  the folder of the plain module
 std::vector<Catch> run_catches(const std::filesystem::path& modules);
 
 /// What stands in reports/measured/gates.json: the same from every build, but for rounding, of which three

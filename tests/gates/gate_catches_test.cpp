@@ -38,7 +38,7 @@ TEST(Gates, EveryRowOfTheTable_HasItsBrokenEngine) {
   std::set<std::string> broken;
   for (const Catch& row : catches()) broken.insert(row.engine);
   std::set<std::string> named;
-  for (const Catcher& row : kCatchers) named.insert("textbook@" + std::string(row.defect));
+  for (const Catcher& row : kCatchers) named.insert("plain@" + std::string(row.defect));
   EXPECT_EQ(named, broken);
 }
 
@@ -49,7 +49,7 @@ TEST(Gates, TheUnbrokenEngine_PassesAllThatItCanRun) {
   options.command = "check";
   options.scenes = {"course/", "flight/", "friction/", "impact/", "line/", "wall/"};
   for (const Catcher& row : kCatchers) options.scenes.emplace_back(row.scene);
-  options.engines = {"textbook"};
+  options.engines = {"plain"};
   options.engines_from = {CAROM_TEST_ENGINE_DIR};
   options.json_file = file;
   options.parallel = 2;

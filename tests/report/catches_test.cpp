@@ -35,9 +35,9 @@ class CatchesChapter : public testing::Test {
 };
 
 TEST_F(CatchesChapter, ShowsWhatIsBroken_AndWhatCatchesIt) {
-  EXPECT_THAT(of(R"({"catches": [{"engine": "textbook@leak", "broken": "a <leak>", "scene": "gas/hundred-2d",
+  EXPECT_THAT(of(R"({"catches": [{"engine": "plain@leak", "broken": "a <leak>", "scene": "gas/hundred-2d",
                      "metric": "momentum", "value": 1e-3, "limit": 1e-12, "caught": true},
-                    {"engine": "textbook@twist", "broken": "a twist", "scene": "x/y", "metric": "energy",
+                    {"engine": "plain@twist", "broken": "a twist", "scene": "x/y", "metric": "energy",
                      "value": 0.0, "limit": 1.0, "caught": false}]})"),
               AllOf(HasSubstr("leak</th><td>A &lt;leak&gt;.</td><td>gas/hundred-2d</td><td>momentum</td>"),
                     HasSubstr("<td>not caught</td>")));

@@ -4,13 +4,13 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/engines/textbook/textbook.h"
+#include "tests/engines/plain/plain.h"
 
-namespace carom::textbook {
+namespace carom::plain {
 
 /// A way in which an engine can be wrong.
 struct Defect {
-  std::string_view name;  ///< the profile by which it is asked for: textbook@<name>
+  std::string_view name;  ///< the profile by which it is asked for: plain@<name>
   std::string_view what;  ///< what is broken, as part of a sentence
   std::unique_ptr<Simulation> (*make)(const Scenario& scene);
 };
@@ -19,4 +19,4 @@ struct Defect {
 /// test.
 const std::vector<Defect>& defects();
 
-}  // namespace carom::textbook
+}  // namespace carom::plain

@@ -1,9 +1,9 @@
-#include "tests/engines/textbook/textbook.h"
+#include "tests/engines/plain/plain.h"
 
 #include <cmath>
 #include <stdexcept>
 
-namespace carom::textbook {
+namespace carom::plain {
 
 namespace {
 
@@ -17,11 +17,11 @@ double inverse(double mass) {
 
 }  // namespace
 
-Textbook::Textbook(const Scenario& scene) : scene_(&scene) {
+Plain::Plain(const Scenario& scene) : scene_(&scene) {
   for (const Ball& ball : scene.balls) bodies_.push_back({&ball, ball.position, ball.velocity, ball.spin});
 }
 
-void Textbook::advance(double step_s, std::int64_t steps) {
+void Plain::advance(double step_s, std::int64_t steps) {
   step_s_ = step_s;
   if (smooth()) {
     for (std::int64_t i = 0; i < steps; ++i) integrate(step_s);
@@ -42,13 +42,13 @@ void Textbook::advance(double step_s, std::int64_t steps) {
   time_s_ = end_s;
 }
 
-void Textbook::snapshot(std::span<BallState> balls) const {
+void Plain::snapshot(std::span<BallState> balls) const {
   for (std::size_t i = 0; i < balls.size(); ++i) balls[i] = {bodies_[i].x, bodies_[i].v, bodies_[i].w};
 }
 
 // --- motion
 
-Vec3 Textbook::acceleration(const Body& body) const {
+Vec3 Plain::acceleration(const Body& body) const {
   Vec3 force = body.ball->mass * gravity();
   if (scene_->effects.drag) {
     const Drag& drag = *scene_->effects.drag;
@@ -59,7 +59,7 @@ Vec3 Textbook::acceleration(const Body& body) const {
   return force / body.ball->mass;
 }
 
-void Textbook::fly(double time_s) {
+void Plain::fly(double time_s) {
   for (Body& body : bodies_) {
     if (!movable(body)) {
       body.x += time_s * body.v;
@@ -71,7 +71,7 @@ void Textbook::fly(double time_s) {
 }
 
 /// The classical Runge–Kutta method for x' = v, v' = a(v).
-void Textbook::integrate(double step_s) {
+void Plain::integrate(double step_s) {
   for (Body& body : bodies_) {
     const auto at = [&](const Vec3& velocity) {
       Body moved = body;
@@ -94,7 +94,7 @@ void Textbook::integrate(double step_s) {
 // --- finding what meets
 
 /// |d + u t| = R: t = (|d|² − R²)/(−d·u + √(|u|² R² − |d × u|²)), without cancellation for d·u < 0.
-std::optional<double> Textbook::wait(const Body& a, const Body& b) const {
+std::optional<double> Plain::wait(const Body& a, const Body& b) const {
   const Vec3 d = b.x - a.x;
   const Vec3 u = b.v - a.v;
   const double reach_m = radius(a) + radius(b);
@@ -108,7 +108,7 @@ std::optional<double> Textbook::wait(const Body& a, const Body& b) const {
 }
 
 /// gap + v t + ½ a t² = 0 on the way in.
-std::optional<double> Textbook::wait(const Body& body, const Vec3& normal, double offset) const {
+std::optional<double> Plain::wait(const Body& body, const Vec3& normal, double offset) const {
   const double gap = normal.dot(body.x) - offset - radius(body);
   const double v = normal.dot(body.v);
   const double a = normal.dot(gravity());
@@ -120,13 +120,13 @@ std::optional<double> Textbook::wait(const Body& body, const Vec3& normal, doubl
   return v < 0.0 ? 2.0 * gap / (root - v) : (v + root) / -a;
 }
 
-void Textbook::take(std::optional<Touch>& first, const std::optional<double>& wait_s, Touch touch) {
+void Plain::take(std::optional<Touch>& first, const std::optional<double>& wait_s, Touch touch) {
   if (!wait_s || (first && *wait_s >= first->wait_s)) return;
   touch.wait_s = *wait_s;
   first = touch;
 }
 
-void Textbook::add_walls(std::optional<Touch>& first, std::size_t a) const {
+void Plain::add_walls(std::optional<Touch>& first, std::size_t a) const {
   const Body& body = bodies_[a];
   if (!movable(body)) return;
   for (std::size_t k = 0; k < scene_->walls.size(); ++k) {
@@ -140,7 +140,7 @@ void Textbook::add_walls(std::optional<Touch>& first, std::size_t a) const {
   }
 }
 
-std::optional<Touch> Textbook::next_touch() const {
+std::optional<Touch> Plain::next_touch() const {
   std::optional<Touch> first;
   for (std::size_t a = 0; a < bodies_.size(); ++a) {
     add_walls(first, a);
@@ -155,19 +155,19 @@ std::optional<Touch> Textbook::next_touch() const {
 
 // --- what happens then
 
-void Textbook::collide(const Touch& touch) {
+void Plain::collide(const Touch& touch) {
   Touch now = touch;
   if (touch.b) now.normal = (bodies_[*touch.b].x - bodies_[touch.a].x).normalized();
   push(now, impulse(now));
   ++tally_.impacts;
 }
 
-Contact Textbook::surface(const Touch& touch) const {
+Contact Plain::surface(const Touch& touch) const {
   return touch.b ? scene_->ball_contact : scene_->wall_contact;
 }
 
 /// g = v_b − v_a − (r_a ω_a + r_b ω_b) × n; a wall neither moves nor turns.
-Vec3 Textbook::slip(const Touch& touch) const {
+Vec3 Plain::slip(const Touch& touch) const {
   const Body& a = bodies_[touch.a];
   Vec3 velocity = -a.v;
   Vec3 turning = a.ball->radius * a.w;
@@ -178,7 +178,7 @@ Vec3 Textbook::slip(const Touch& touch) const {
   return velocity - turning.cross(touch.normal);
 }
 
-Vec3 Textbook::impulse(const Touch& touch) const {
+Vec3 Plain::impulse(const Touch& touch) const {
   const Contact contact = surface(touch);
   const Body& a = bodies_[touch.a];
   const Body* b = touch.b ? &bodies_[*touch.b] : nullptr;
@@ -200,7 +200,7 @@ Vec3 Textbook::impulse(const Touch& touch) const {
   return total;
 }
 
-void Textbook::push(const Touch& touch, const Vec3& impulse_Ns) {
+void Plain::push(const Touch& touch, const Vec3& impulse_Ns) {
   Body& a = bodies_[touch.a];
   const Vec3 at = a.x + a.ball->radius * touch.normal;
   push(a, touch, touch.normal, -impulse_Ns);
@@ -209,7 +209,7 @@ void Textbook::push(const Touch& touch, const Vec3& impulse_Ns) {
   if (touch.b && !movable(a)) book(impulse_Ns, at);
 }
 
-void Textbook::push(Body& body, const Touch& touch, const Vec3& out, const Vec3& impulse_Ns) const {
+void Plain::push(Body& body, const Touch& touch, const Vec3& out, const Vec3& impulse_Ns) const {
   if (!movable(body)) return;
   const double m = mass(body, touch);
   body.v += impulse_Ns / m;
@@ -218,9 +218,9 @@ void Textbook::push(Body& body, const Touch& touch, const Vec3& out, const Vec3&
   body.w += r * out.cross(impulse_Ns) / (inertia(body) * m * r * r);
 }
 
-void Textbook::book(const Vec3& impulse_Ns, const Vec3& at) {
+void Plain::book(const Vec3& impulse_Ns, const Vec3& at) {
   tally_.external_impulse += impulse_Ns;
   tally_.external_angular_impulse += at.cross(impulse_Ns);
 }
 
-}  // namespace carom::textbook
+}  // namespace carom::plain

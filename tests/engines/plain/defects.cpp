@@ -1,93 +1,93 @@
-#include "tests/engines/textbook/defects.h"
+#include "tests/engines/plain/defects.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace carom::textbook {
+namespace carom::plain {
 
 namespace {
 
-// Each is the textbook engine with one step done wrong, and nothing else.
+// Each is the plain engine with one step done wrong, and nothing else.
 
 // --- the impact law
 
-struct RestitutionOff : Textbook {
-  using Textbook::Textbook;
+struct RestitutionOff : Plain {
+  using Plain::Plain;
   Contact surface(const Touch& touch) const override {
-    Contact contact = Textbook::surface(touch);
+    Contact contact = Plain::surface(touch);
     contact.restitution *= 0.999;
     return contact;
   }
 };
 
-struct VelocityThreshold : Textbook {
-  using Textbook::Textbook;
+struct VelocityThreshold : Plain {
+  using Plain::Plain;
   Contact surface(const Touch& touch) const override {
-    Contact contact = Textbook::surface(touch);
+    Contact contact = Plain::surface(touch);
     if (std::abs(slip(touch).dot(touch.normal)) < 1.0) contact.restitution = 0.0;
     return contact;
   }
 };
 
-struct WallRestitutionForBalls : Textbook {
-  using Textbook::Textbook;
+struct WallRestitutionForBalls : Plain {
+  using Plain::Plain;
   Contact surface(const Touch& /*touch*/) const override { return scene().wall_contact; }
 };
 
-struct FrictionSign : Textbook {
-  using Textbook::Textbook;
+struct FrictionSign : Plain {
+  using Plain::Plain;
   Vec3 impulse(const Touch& touch) const override {
-    const Vec3 right = Textbook::impulse(touch);
+    const Vec3 right = Plain::impulse(touch);
     const Vec3 normal = right.dot(touch.normal) * touch.normal;
     return normal - (right - normal);
   }
 };
 
-struct NoFrictionCone : Textbook {
-  using Textbook::Textbook;
+struct NoFrictionCone : Plain {
+  using Plain::Plain;
   Contact surface(const Touch& touch) const override {
-    Contact contact = Textbook::surface(touch);
+    Contact contact = Plain::surface(touch);
     if (contact.friction > 0.0) contact.friction = 1e9;
     return contact;
   }
 };
 
-struct TangentialRestitutionIgnored : Textbook {
-  using Textbook::Textbook;
+struct TangentialRestitutionIgnored : Plain {
+  using Plain::Plain;
   Contact surface(const Touch& touch) const override {
-    Contact contact = Textbook::surface(touch);
+    Contact contact = Plain::surface(touch);
     contact.tangential_restitution = 0.0;
     return contact;
   }
 };
 
-struct SpinOfSecondIgnored : Textbook {
-  using Textbook::Textbook;
+struct SpinOfSecondIgnored : Plain {
+  using Plain::Plain;
   Vec3 slip(const Touch& touch) const override {
-    if (!touch.b) return Textbook::slip(touch);
+    if (!touch.b) return Plain::slip(touch);
     const Body& b = bodies_[*touch.b];
-    return Textbook::slip(touch) + (b.ball->radius * b.w).cross(touch.normal);
+    return Plain::slip(touch) + (b.ball->radius * b.w).cross(touch.normal);
   }
 };
 
-struct DiskInertia : Textbook {
-  using Textbook::Textbook;
+struct DiskInertia : Plain {
+  using Plain::Plain;
   double inertia(const Body& /*body*/) const override { return 0.5; }
 };
 
-struct NoTorque : Textbook {
-  using Textbook::Textbook;
+struct NoTorque : Plain {
+  using Plain::Plain;
   void push(Body& body, const Touch& touch, const Vec3& out, const Vec3& impulse_Ns) const override {
     const Vec3 spin = body.w;
-    Textbook::push(body, touch, out, impulse_Ns);
+    Plain::push(body, touch, out, impulse_Ns);
     body.w = spin;
   }
-  using Textbook::push;
+  using Plain::push;
 };
 
-struct MassRatioClamped : Textbook {
-  using Textbook::Textbook;
+struct MassRatioClamped : Plain {
+  using Plain::Plain;
   double mass(const Body& body, const Touch& touch) const override {
     if (!touch.b) return body.ball->mass;
     const double heavier = std::max(bodies_[touch.a].ball->mass, bodies_[*touch.b].ball->mass);
@@ -95,8 +95,8 @@ struct MassRatioClamped : Textbook {
   }
 };
 
-struct ImmovableIsHeavy : Textbook {
-  using Textbook::Textbook;
+struct ImmovableIsHeavy : Plain {
+  using Plain::Plain;
   double mass(const Body& body, const Touch& /*touch*/) const override {
     return std::isinf(body.ball->mass) ? 1e6 : body.ball->mass;
   }
@@ -104,78 +104,78 @@ struct ImmovableIsHeavy : Textbook {
 
 // --- who gets the impulse
 
-struct MomentumLeak : Textbook {
-  using Textbook::Textbook;
+struct MomentumLeak : Plain {
+  using Plain::Plain;
   void push(const Touch& touch, const Vec3& impulse_Ns) override {
     const bool leaks = touch.b && tally_.impacts % 1000 == 999;
-    Textbook::push(touch, impulse_Ns);
+    Plain::push(touch, impulse_Ns);
     if (leaks) bodies_[*touch.b].v -= 1e-3 * impulse_Ns / bodies_[*touch.b].ball->mass;
   }
-  using Textbook::push;
+  using Plain::push;
 };
 
-struct PairOrder : Textbook {
-  using Textbook::Textbook;
+struct PairOrder : Plain {
+  using Plain::Plain;
   /// The second ball's impulse is worked out when the first has its new velocity already.
   void push(const Touch& touch, const Vec3& impulse_Ns) override {
-    if (!touch.b) return Textbook::push(touch, impulse_Ns);
+    if (!touch.b) return Plain::push(touch, impulse_Ns);
     push(bodies_[touch.a], touch, touch.normal, -impulse_Ns);
     push(bodies_[*touch.b], touch, -touch.normal, impulse(touch));
   }
-  using Textbook::push;
+  using Plain::push;
 };
 
-struct LabelsSwapped : Textbook {
-  using Textbook::Textbook;
+struct LabelsSwapped : Plain {
+  using Plain::Plain;
   void collide(const Touch& touch) override {
-    Textbook::collide(touch);
+    Plain::collide(touch);
     if (!touch.b) return;
     std::swap(bodies_[touch.a].x, bodies_[*touch.b].x);
     std::swap(bodies_[touch.a].v, bodies_[*touch.b].v);
   }
 };
 
-struct WallImpulseSign : Textbook {
-  using Textbook::Textbook;
-  void book(const Vec3& impulse_Ns, const Vec3& at) override { Textbook::book(-impulse_Ns, at); }
+struct WallImpulseSign : Plain {
+  using Plain::Plain;
+  void book(const Vec3& impulse_Ns, const Vec3& at) override { Plain::book(-impulse_Ns, at); }
 };
 
-struct AngularImpulseNotBooked : Textbook {
-  using Textbook::Textbook;
+struct AngularImpulseNotBooked : Plain {
+  using Plain::Plain;
   void book(const Vec3& impulse_Ns, const Vec3& /*at*/) override { tally_.external_impulse += impulse_Ns; }
 };
 
 // --- finding what meets
 
-struct ForgottenWall : Textbook {
-  using Textbook::Textbook;
+struct ForgottenWall : Plain {
+  using Plain::Plain;
   bool sees_wall(std::size_t wall) const override { return wall != 1; }
 };
 
-struct CellBorder : Textbook {
-  using Textbook::Textbook;
+struct CellBorder : Plain {
+  using Plain::Plain;
   /// Balls are held against those of their own cell of 1 m, and never against those of the next.
   bool sees(const Body& a, const Body& b) const override {
     return (a.x.array().floor() == b.x.array().floor()).all();
   }
 };
 
-struct CollisionMargin : Textbook {
-  using Textbook::Textbook;
+struct CollisionMargin : Plain {
+  using Plain::Plain;
   double radius(const Body& body) const override { return 0.999 * body.ball->radius; }
 };
 
-struct TieForgotten : Textbook {
-  using Textbook::Textbook;
+struct TieForgotten : Plain {
+  using Plain::Plain;
   /// Of the impacts of one moment only the first is carried out: the others find their balls overlapping a
   /// little, and those that overlap are taken for done.
   bool sees(const Body& a, const Body& b) const override {
     constexpr double kTouching = 1e-12;
     if (tied_ && (b.x - a.x).norm() < (radius(a) + radius(b)) * (1.0 + kTouching)) return false;
-    return Textbook::sees(a, b);
+    return Plain::sees(a, b);
   }
   void collide(const Touch& touch) override {
-    Textbook::collide(touch);
+    Plain::collide(touch);
     tied_ = true;
   }
 
@@ -183,11 +183,11 @@ struct TieForgotten : Textbook {
   bool tied_ = false;
 };
 
-struct EndOfStep : Textbook {
-  using Textbook::Textbook;
+struct EndOfStep : Plain {
+  using Plain::Plain;
   /// An impact is carried out when the step ends in which it happens, wherever the balls are by then.
   std::optional<Touch> next_touch() const override {
-    std::optional<Touch> touch = Textbook::next_touch();
+    std::optional<Touch> touch = Plain::next_touch();
     if (touch) touch->wait_s = std::ceil((time_s_ + touch->wait_s) / step_s_) * step_s_ - time_s_;
     return touch;
   }
@@ -195,76 +195,76 @@ struct EndOfStep : Textbook {
 
 // --- time and motion
 
-struct FirstOrderGravity : Textbook {
-  using Textbook::Textbook;
+struct FirstOrderGravity : Plain {
+  using Plain::Plain;
   /// Semi-implicit Euler: with steps s it adds ½ g s t to the fall.
   void fly(double time_s) override {
-    Textbook::fly(time_s);
+    Plain::fly(time_s);
     for (Body& body : bodies_) body.x += 0.5 * step_s_ * time_s * gravity();
   }
 };
 
-struct GravityAtBounce : Textbook {
-  using Textbook::Textbook;
+struct GravityAtBounce : Plain {
+  using Plain::Plain;
   /// The velocity is turned round with a step's gravity in it.
   void collide(const Touch& touch) override {
     bodies_[touch.a].v += step_s_ * gravity();
-    Textbook::collide(touch);
+    Plain::collide(touch);
   }
 };
 
-struct PositionCorrection : Textbook {
-  using Textbook::Textbook;
+struct PositionCorrection : Plain {
+  using Plain::Plain;
   /// A ball that has bounced is moved out of the wall by a millionth of its radius, and keeps its velocity.
   void collide(const Touch& touch) override {
-    Textbook::collide(touch);
+    Plain::collide(touch);
     if (!touch.b) bodies_[touch.a].x -= 1e-6 * bodies_[touch.a].ball->radius * touch.normal;
   }
 };
 
-struct TimeLost : Textbook {
-  using Textbook::Textbook;
+struct TimeLost : Plain {
+  using Plain::Plain;
   /// Every impact costs a microsecond in which nothing moves.
   void collide(const Touch& touch) override {
-    Textbook::collide(touch);
+    Plain::collide(touch);
     time_s_ += 1e-6;
   }
 };
 
-struct SpeedLimit : Textbook {
-  using Textbook::Textbook;
+struct SpeedLimit : Plain {
+  using Plain::Plain;
   /// No ball goes further than 2 m in a step.
   void fly(double time_s) override {
     for (Body& body : bodies_) {
       const double speed_mps = body.v.norm();
       if (speed_mps * step_s_ > 2.0) body.v *= 2.0 / (speed_mps * step_s_);
     }
-    Textbook::fly(time_s);
+    Plain::fly(time_s);
   }
 };
 
-struct Sleeping : Textbook {
-  using Textbook::Textbook;
+struct Sleeping : Plain {
+  using Plain::Plain;
   void fly(double time_s) override {
     for (Body& body : bodies_) {
       if (body.v.norm() < 0.05) body.v.setZero();
     }
-    Textbook::fly(time_s);
+    Plain::fly(time_s);
   }
 };
 
-struct Damping : Textbook {
-  using Textbook::Textbook;
+struct Damping : Plain {
+  using Plain::Plain;
   void fly(double time_s) override {
-    Textbook::fly(time_s);
+    Plain::fly(time_s);
     for (Body& body : bodies_) body.v *= 1.0 - 0.05 * time_s;
   }
 };
 
-struct SinglePrecision : Textbook {
-  using Textbook::Textbook;
+struct SinglePrecision : Plain {
+  using Plain::Plain;
   void fly(double time_s) override {
-    Textbook::fly(time_s);
+    Plain::fly(time_s);
     for (Body& body : bodies_) {
       body.x = body.x.cast<float>().cast<double>();
       body.v = body.v.cast<float>().cast<double>();
@@ -272,19 +272,17 @@ struct SinglePrecision : Textbook {
   }
 };
 
-struct DragSign : Textbook {
-  using Textbook::Textbook;
-  Vec3 acceleration(const Body& body) const override {
-    return 2.0 * gravity() - Textbook::acceleration(body);
-  }
+struct DragSign : Plain {
+  using Plain::Plain;
+  Vec3 acceleration(const Body& body) const override { return 2.0 * gravity() - Plain::acceleration(body); }
 };
 
-struct MagnusSign : Textbook {
-  using Textbook::Textbook;
+struct MagnusSign : Plain {
+  using Plain::Plain;
   Vec3 acceleration(const Body& body) const override {
     Body turned = body;
     turned.w = -body.w;
-    return Textbook::acceleration(turned);
+    return Plain::acceleration(turned);
   }
 };
 
@@ -342,4 +340,4 @@ const std::vector<Defect>& defects() {
   return all;
 }
 
-}  // namespace carom::textbook
+}  // namespace carom::plain

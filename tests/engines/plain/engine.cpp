@@ -2,19 +2,19 @@
 #include <cmath>
 #include <string>
 
-#include "tests/engines/textbook/defects.h"
+#include "tests/engines/plain/defects.h"
 
-namespace carom::textbook {
+namespace carom::plain {
 
 namespace {
 
-/// The textbook engine: right in its faithful profile, and in each other one wrong in the way that it is
+/// The plain engine: right in its faithful profile, and in each other one wrong in the way that it is
 /// named for.
-class TextbookEngine final : public Engine {
+class PlainEngine final : public Engine {
  public:
   EngineInfo info() const override {
     EngineInfo info;
-    info.name = "textbook";
+    info.name = "plain";
     info.about = "A plain event-driven engine, and broken variants of it that the gates must catch";
     info.version = "1";
     info.precision = "float64";
@@ -24,7 +24,7 @@ class TextbookEngine final : public Engine {
     }
     for (const Feature feature :
          {Feature::simultaneous, Feature::generalized_reflections, Feature::barrier, Feature::events}) {
-      info.cannot[feature] = "no textbook has it";
+      info.cannot[feature] = "it is too plain for that";
     }
     return info;
   }
@@ -47,7 +47,7 @@ class TextbookEngine final : public Engine {
     for (const Defect& defect : defects()) {
       if (defect.name == profile) return defect.make(scene);
     }
-    return std::make_unique<Textbook>(scene);
+    return std::make_unique<Plain>(scene);
   }
 
  private:
@@ -77,6 +77,6 @@ class TextbookEngine final : public Engine {
 
 }  // namespace
 
-}  // namespace carom::textbook
+}  // namespace carom::plain
 
-CAROM_ENGINE_MODULE(carom::textbook::TextbookEngine)
+CAROM_ENGINE_MODULE(carom::plain::PlainEngine)

@@ -8,7 +8,7 @@
 
 #include "engine/engine.h"
 
-namespace carom::textbook {
+namespace carom::plain {
 
 /// A ball as it is now.
 struct Body {
@@ -30,9 +30,9 @@ struct Touch {
 /// every wall; parabolas between them, or Runge and Kutta's fourth order where a force depends on the
 /// velocity. It shares nothing with Carom's engine, and every step of it can be overridden: the engines that
 /// are broken on purpose (defects.cpp) are this one with one step done wrong.
-class Textbook : public Simulation {
+class Plain : public Simulation {
  public:
-  explicit Textbook(const Scenario& scene);
+  explicit Plain(const Scenario& scene);
 
   void advance(double step_s, std::int64_t steps) override;
   void snapshot(std::span<BallState> balls) const override;
@@ -92,4 +92,4 @@ class Textbook : public Simulation {
   const Scenario* scene_;
 };
 
-}  // namespace carom::textbook
+}  // namespace carom::plain
