@@ -5,6 +5,7 @@
 #include "app/engines.h"
 #include "app/layout.h"
 #include "carom/carom_engine.h"
+#include "carom/textbook/textbook.h"
 #include "report/words.h"
 #include "scenario/catalog.h"
 #include "scenario/features.h"
@@ -49,6 +50,7 @@ std::vector<EngineInfo> described(const Options& options, const EngineCatalog& c
 void list_engines(const Options& options, const EngineCatalog& catalog) {
   fmt::print("Engines (--engine NAME or NAME@PROFILE):\n");
   for (const EngineInfo& info : described(options, catalog)) list_engine(info);
+  list_engine(make_carom_engine(std::string(kTextbookName))->info());
   print_wrapped("  variants     ", fmt::format("{}", fmt::join(carom_variant_names(), ", ")));
   for (const MissingEngine& engine : catalog.missing()) {
     fmt::print("  {:<12} is not built: {} is not installed\n", engine.name, engine.package);

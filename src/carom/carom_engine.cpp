@@ -7,6 +7,7 @@
 #include "carom/broad_phase/list.h"
 #include "carom/compose.h"
 #include "carom/evolvers/list.h"
+#include "carom/textbook/textbook.h"
 
 namespace carom {
 
@@ -85,10 +86,12 @@ std::vector<std::string> carom_variant_names() {
   for (const auto& [name, variant] : all_variants()) {
     if (name != "carom") names.push_back(name);
   }
+  names.emplace_back(kTextbookName);
   return names;
 }
 
 std::unique_ptr<Engine> make_carom_engine(const std::string& name) {
+  if (name == kTextbookName) return make_textbook_engine();
   return std::make_unique<CaromEngine>(name, all_variants().at(name));
 }
 

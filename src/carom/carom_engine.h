@@ -9,7 +9,8 @@
 namespace carom {
 
 /// The names under which the hand-written engine runs with its evolver or its broad phase, or both, chosen by
-/// name and not for the scene: "carom:step", "carom:quadtree", "carom:toi:brute-force".
+/// name and not for the scene: "carom:step", "carom:quadtree", "carom:toi:brute-force". And "carom:textbook",
+/// the course program.
 std::vector<std::string> carom_variant_names();
 
 /// The hand-written engine. @param name  "carom", or one of carom_variant_names()
