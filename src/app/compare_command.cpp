@@ -12,6 +12,7 @@
 #include "comparison/baseline_file.h"
 #include "comparison/check_symmetries.h"
 #include "comparison/compare.h"
+#include "comparison/examine_textbook.h"
 #include "core/files.h"
 #include "report/csv.h"
 #include "report/json.h"
@@ -123,6 +124,7 @@ ExitCode compare_command(const Options& options) {
   }
   if (full_report(options)) {
     results.coefficients = measure_coefficients(engines, limits, options.parallel);
+    results.textbook = examine_textbook();
   }
   if (baseline) hold_against(*baseline, options.baseline_factor.value_or(kBaselineFactor), results);
   if (!options.quiet || !results.holds()) {

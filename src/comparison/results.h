@@ -7,6 +7,7 @@
 
 #include "comparison/coefficients.h"
 #include "comparison/comparison.h"
+#include "comparison/examine_textbook.h"
 #include "engine/engine.h"
 
 namespace carom {
@@ -56,6 +57,7 @@ struct Results {
   std::vector<MissingEngine> missing;
   std::vector<SceneComparison> scenes;
   std::vector<CoefficientPanel> coefficients;  ///< empty where they were not measured
+  std::optional<TextbookFindings> textbook;    ///< where the course program was examined
   std::optional<std::uint64_t> seed;           ///< given instead of the scenes' own
   std::optional<BaselineFindings> baseline;    ///< where there was one to hold against
 

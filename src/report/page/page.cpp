@@ -14,6 +14,7 @@
 #include "report/page/style.h"
 #include "report/page/survival.h"
 #include "report/page/symmetry.h"
+#include "report/page/textbook.h"
 
 namespace carom {
 
@@ -58,6 +59,7 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
   if (has_hard_cases(results)) add(bar, "a", {{"href", "#survival"}}, "Hard cases");
   if (!results.coefficients.empty()) add(bar, "a", {{"href", "#coefficients"}}, "Impacts");
   if (has_symmetries(results)) add(bar, "a", {{"href", "#symmetry"}}, "Symmetries");
+  if (results.textbook) add(bar, "a", {{"href", "#textbook"}}, "The course program");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
   if (std::filesystem::exists(published_file(web)))
@@ -83,6 +85,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_coefficients(main, results.coefficients, legend);
   add_symmetries(main, results, legend);
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
+  add_textbook(main, results.textbook);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
   add_measured(main, published_file(web));
