@@ -97,7 +97,7 @@ void add_shift(Node parent, const TextbookFindings& findings) {
                        mo(")"), mo(","),
                        x("1"),  mo("−="),
                        mi("o"), frac(row({x("1"), mo("−"), x("2")}), mi("d")),
-                       mo(","), mtext("then"),
+                       mo(","), mtext("\u00a0then\u00a0"),
                        x("2"),  mo("+="),
                        mi("o"), frac(row({x("1"), mo("−"), x("2")}), mi("d"))});
   add(parent, "p", {},
