@@ -32,13 +32,19 @@ struct SolvedContact {
 ///
 /// Position correction: a ball whose contacts pushed, and that moved in the step from x to x' with the
 /// velocity v' at its end, was shifted by x' - x - h v' without that velocity (2); the work of gravity on
-/// that is its energy. Both engines move by h v' with the velocity at the end of the step, so that this is
-/// zero where nothing is corrected. Where continuous collision stops a ball within a step, the way that it
-/// went before counts here too.
+/// that is its energy. This is zero where nothing is corrected. Where continuous collision stops a ball
+/// within a step, the way that it went before counts here too. An engine that moves its balls first does so
+/// by h v with the velocity v at the step's beginning, and corrects in a step what it found in the one
+/// before: there the shift is x' - x - h v (3), of the balls that were pushed in the step before.
 class EnergyBook {
  public:
-  explicit EnergyBook(const Scenario& scene)
+  /// When within a step an engine moves its balls: with the velocity at its end, or with that at its
+  /// beginning.
+  enum class Moves { last, first };
+
+  explicit EnergyBook(const Scenario& scene, Moves moves = Moves::last)
       : gravity_(scene.effects.gravity.value_or(Vec3::Zero())),
+        moves_(moves),
         inverse_inertia_(scene.balls.size(), 0.0),
         before_(scene.balls.size()),
         change_(scene.balls.size()) {
@@ -68,6 +74,10 @@ class EnergyBook {
   /// @param after  the state of a ball at its end, by number
   template <class StateOf>
   void close_step(const StateOf& after, double step_s) {
+    for (const std::size_t ball : pushed_before_) {
+      shift(ball, after(ball).position - before_[ball].position - step_s * before_[ball].velocity);  // (3)
+    }
+    pushed_before_.clear();
     for (const SolvedContact& contact : contacts_) {
       const bool both = contact.a && contact.b;
       (both ? account_.ball_impacts_J : account_.wall_impacts_J) += work(contact, contact.push, after);
@@ -112,23 +122,33 @@ class EnergyBook {
     return state.velocity - 0.5 * change.velocity + (state.spin - 0.5 * change.spin).cross(body.arm);
   }
 
-  /// (2), once for each ball.
+  /// Once for each ball.
   template <class StateOf>
   void close(std::size_t ball, const StateOf& after, double step_s) {
     if (!change_[ball].open) return;
     change_[ball] = {};
     if (!wants_places()) return;
+    if (moves_ == Moves::first) {
+      pushed_before_.push_back(ball);
+      return;
+    }
     const BallState state = after(ball);
-    const Vec3 shift = state.position - before_[ball].position - step_s * state.velocity;
-    account_.correction_J -= gravity_.dot(shift) / inverse_mass_[ball];
+    shift(ball, state.position - before_[ball].position - step_s * state.velocity);  // (2)
+  }
+
+  /// The engine moved a ball by this without a velocity.
+  void shift(std::size_t ball, const Vec3& by_m) {
+    account_.correction_J -= gravity_.dot(by_m) / inverse_mass_[ball];
   }
 
   Vec3 gravity_;
+  Moves moves_;
   std::vector<double> inverse_mass_;
   std::vector<double> inverse_inertia_;
   std::vector<BallState> before_;
   std::vector<Change> change_;  // by the pushes of this step
   std::vector<SolvedContact> contacts_;
+  std::vector<std::size_t> pushed_before_;  // in the step before, where balls move first
   EnergyAccount account_;
 };
 

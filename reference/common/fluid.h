@@ -6,8 +6,8 @@
 
 namespace carom::reference {
 
-// Forces that neither Box2D nor Bullet has. An adapter applies them through the engine's force input, once
-// per step, as the mean force that takes the ball's velocity to its exact value at the end of the step.
+// Forces that an engine has none of its own for. An adapter applies them through the engine's force input,
+// once per step, as the mean force that takes the ball's velocity to its exact value at the end of the step.
 
 /// Whether the scene needs a force of this file.
 inline bool needs_fluid_force(const Effects& effects) {
@@ -41,6 +41,14 @@ inline Vec3 fluid_force(const Effects& effects, const Ball& ball, const Vec3& ve
 inline double linear_drag_rate(const Effects& effects, const Ball& ball) {
   const bool linear = effects.drag && effects.drag->kind == Drag::Kind::linear;
   return linear ? effects.drag->coefficient / ball.mass : 0.0;
+}
+
+/// The mean force over a step from linear drag, N, for engines whose own damping cannot express it:
+///   m dv/dt = -c v   =>   v(h) = v e^{-c h/m}                            (4)
+/// and (3), in the symbols of fluid_force.
+inline Vec3 linear_drag_force(const Effects& effects, const Ball& ball, const Vec3& velocity_mps,
+                              double step_s) {
+  return ball.mass * std::expm1(-linear_drag_rate(effects, ball) * step_s) / step_s * velocity_mps;
 }
 
 }  // namespace carom::reference

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "scenario/scenario.h"
 
@@ -81,6 +84,23 @@ inline Reach reach_of(const Scenario& scene) {
   }
   reach.radius_m += expected_top_speed_mps(scene) * scene.duration_s;
   return reach;
+}
+
+/// Why a fixed-step engine without continuous collision cannot be trusted with this scene: its fastest ball
+/// can jump through the smallest one within a step. Empty where it cannot. Two balls overlap and still
+/// approach until their centres pass, that is over r_a + r_b; a longer way in a step can leave that out.
+inline std::string jumps_through_balls(const Scenario& scene) {
+  if (!scene.effects.collisions || scene.balls.size() < 2) return {};
+  const double smallest_m = smallest_radius_m(scene);
+  for (const Ball& ball : scene.balls) {
+    const double travel_m = ball.velocity.norm() * first_step_s(scene);
+    if (travel_m <= ball.radius + smallest_m) continue;
+    return fmt::format(
+        "it has no continuous collision, and a ball that moves {:.3g} m in a step can jump through another "
+        "of radius {:.3g} m",
+        travel_m, smallest_m);
+  }
+  return {};
 }
 
 /// The power of two nearest below `factor`: multiplying by it and dividing by it rounds nothing.

@@ -102,7 +102,7 @@ Parsed parse_options(int argc, char** argv) {
   options.color = isatty(STDOUT_FILENO) == 1 && (no_color == nullptr || *no_color == '\0');
 
   CLI::App app(
-      "Carom runs a hand-written ball-collision engine, Box2D, Bullet and closed forms on the same scenes "
+      "Carom runs a hand-written ball-collision engine, others and exact solutions on the same scenes "
       "and "
       "says where they part.");
   app.name("carom");
