@@ -1,0 +1,397 @@
+#include "report/playback.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "comparison/comparison.h"
+#include "comparison/conserved.h"
+#include "report/impacts.h"
+#include "report/json_number.h"
+#include "report/pack.h"
+
+namespace carom {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kPositionBits =
+    14;  // below the smallest radius: a tenth of a pixel where a ball is 1600 pixels wide
+constexpr int kSpeedBits = 20;        // below the largest speed: six digits
+constexpr double kLargest = 1 << 29;  // a first difference of two such numbers fits into 31 bits
+constexpr double kTimeUnits = 1 << 30;
+
+Json vector_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+/// The largest power of two that is at most `finest` and on whose grid `largest` fits into 30 bits.
+double grid(double finest, double largest) {
+  const double needed = largest / kLargest;
+  const double step = std::max(finest, std::numeric_limits<double>::min());
+  return std::exp2(needed > step ? std::ceil(std::log2(needed)) : std::floor(std::log2(step)));
+}
+
+struct Grids {
+  double position_m = 1.0;
+  double speed_mps = 1.0;
+  double spin_radps = 1.0;
+};
+
+/// What is played: which balls, which frames, on which grids.
+struct Cut {
+  std::size_t balls = 0;
+  std::size_t every = 1;
+  std::vector<std::size_t> frames;  ///< of a whole run
+  Grids grids;
+};
+
+bool plays(const Run& run) {
+  return run.status == RunStatus::ok && run.trajectory.frames() > 0;
+}
+
+bool finite(const BallState& state) {
+  return state.position.allFinite() && state.velocity.allFinite() && state.spin.allFinite();
+}
+
+/// The number of frames until the first that is not finite.
+std::size_t known_frames(const Trajectory& trajectory) {
+  for (std::size_t k = 0; k < trajectory.frames(); ++k) {
+    const auto states = trajectory.frame(k);
+    if (!std::all_of(states.begin(), states.end(), finite)) return k;
+  }
+  return trajectory.frames();
+}
+
+Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories) {
+  double radius = std::numeric_limits<double>::infinity();
+  for (const Ball& ball : scenario.balls) radius = std::min(radius, ball.radius);
+  double farthest = 0.0;
+  double fastest = 0.0;
+  double spin = 0.0;
+  for (const Trajectory* trajectory : trajectories) {
+    const std::size_t frames = known_frames(*trajectory);
+    for (std::size_t k = 0; k < frames; ++k) {
+      for (const BallState& state : trajectory->frame(k)) {
+        farthest = std::max(farthest, state.position.cwiseAbs().maxCoeff());
+        fastest = std::max(fastest, state.velocity.cwiseAbs().maxCoeff());
+        spin = std::max(spin, state.spin.cwiseAbs().maxCoeff());
+      }
+    }
+  }
+  return {grid(std::ldexp(radius, -kPositionBits), farthest), grid(std::ldexp(fastest, -kSpeedBits), fastest),
+          grid(std::ldexp(spin, -kSpeedBits), spin)};
+}
+
+Cut cut_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories,
+           const PlaybackLimits& limits) {
+  Cut cut;
+  cut.balls = std::min(scenario.balls.size(), limits.balls);
+  const auto intervals = static_cast<std::size_t>(scenario.frames);
+  const std::size_t most = std::max<std::size_t>(limits.states / std::max<std::size_t>(cut.balls, 1), 2);
+  cut.every = most > intervals ? 1 : (intervals + most - 2) / (most - 1);
+  for (std::size_t k = 0; k < intervals; k += cut.every) cut.frames.push_back(k);
+  cut.frames.push_back(intervals);
+  cut.grids = grids_of(scenario, trajectories);
+  return cut;
+}
+
+/// A quantity of the balls over frames on a grid, as differences of an order that leaves little: packed
+/// integers.
+template <class Quantity>
+std::string pack_states(const Trajectory& trajectory, std::span<const std::size_t> frames, std::size_t balls,
+                        std::span<const int> axes, double grid, int order, Quantity quantity) {
+  std::vector<std::int32_t> differences;
+  differences.reserve(frames.size() * balls * axes.size());
+  for (const int axis : axes) {
+    for (std::size_t i = 0; i < balls; ++i) {
+      std::uint32_t last = 0;
+      std::uint32_t last_change = 0;
+      for (const std::size_t k : frames) {
+        const double value = std::nearbyint(quantity(trajectory.frame(k)[i])[axis] / grid);
+        // Differences wrap around, and so does their sum.
+        const auto now = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
+        const std::uint32_t change = now - last;
+        differences.push_back(static_cast<std::int32_t>(order == 2 ? change - last_change : change));
+        last = now;
+        last_change = change;
+      }
+    }
+  }
+  return pack_integers(differences);
+}
+
+/// Translation, rotation, potential of every frame, one after the other, J.
+std::string pack_energies(const Reference& reference, const Trajectory& trajectory,
+                          std::span<const std::size_t> frames) {
+  const Scenario& scenario = *reference.scenario;
+  const Vec3 gravity = scenario.effects.gravity.value_or(Vec3::Zero());
+  std::vector<double> translation;
+  std::vector<double> rotation;
+  std::vector<double> potential;
+  for (const std::size_t k : frames) {
+    double moving = 0.0;
+    double turning = 0.0;
+    double falling = 0.0;
+    for (std::size_t i = 0; i < trajectory.balls(); ++i) {
+      const Ball& ball = scenario.balls[i];
+      if (!std::isfinite(ball.mass)) continue;
+      const BallState& state = trajectory.frame(k)[i];
+      moving += 0.5 * ball.mass * state.velocity.squaredNorm();
+      turning += 0.5 * ball.inertia * ball.mass * ball.radius * ball.radius * state.spin.squaredNorm();
+      falling +=
+          ball.mass * (gravity.norm() * reference.fall_m[i] - gravity.dot(state.position - ball.position));
+    }
+    translation.push_back(moving);
+    rotation.push_back(turning);
+    potential.push_back(falling);
+  }
+  translation.insert(translation.end(), rotation.begin(), rotation.end());
+  translation.insert(translation.end(), potential.begin(), potential.end());
+  return pack_doubles(translation);
+}
+
+std::string pack_counted(const Trajectory& trajectory, std::span<const std::size_t> frames) {
+  std::vector<std::int32_t> changes;
+  std::uint32_t last = 0;
+  for (const std::size_t k : frames) {
+    const auto now = static_cast<std::uint32_t>(trajectory.tally(k).impacts);
+    changes.push_back(static_cast<std::int32_t>(now - last));
+    last = now;
+  }
+  return pack_integers(changes);
+}
+
+void add_impacts(Json& json, const Scenario& scenario, const Trajectory& trajectory, const Cut& cut,
+                 std::size_t most) {
+  const SeenImpacts seen = find_impacts(scenario, trajectory, most);
+  std::vector<std::int32_t> numbers;
+  std::int32_t last = 0;
+  for (const SeenImpact& impact : seen.impacts) {
+    if (static_cast<std::size_t>(impact.ball) >= cut.balls) continue;
+    const auto time = static_cast<std::int32_t>(impact.time_s / scenario.duration_s * kTimeUnits);
+    numbers.push_back(time - last);
+    last = time;
+  }
+  const auto shown = [&](std::int32_t ball) { return static_cast<std::size_t>(ball) < cut.balls; };
+  for (const SeenImpact& impact : seen.impacts) {
+    if (shown(impact.ball)) numbers.push_back(impact.ball);
+  }
+  for (const SeenImpact& impact : seen.impacts) {
+    if (shown(impact.ball)) {
+      numbers.push_back(impact.other < 0 || shown(impact.other) ? impact.other : SeenImpact::kUnknown);
+    }
+  }
+  json["impacts"] = pack_integers(numbers);
+  json["impacts_left_out"] = seen.left_out;
+}
+
+void add_states(Json& json, const Reference& reference, const Trajectory& trajectory, const Cut& cut,
+                const PlaybackLimits& limits) {
+  const Scenario& scenario = *reference.scenario;
+  const std::size_t known = known_frames(trajectory);
+  const auto end = std::lower_bound(cut.frames.begin(), cut.frames.end(), known);
+  const std::span<const std::size_t> frames(cut.frames.begin(), end);
+  const bool plane = scenario.dimension == 2;
+  const std::vector<int> axes = plane ? std::vector<int>{0, 1} : std::vector<int>{0, 1, 2};
+  const std::vector<int> turns = plane ? std::vector<int>{2} : axes;
+  json["known"] = frames.size();
+  json["positions"] = pack_states(trajectory, frames, cut.balls, axes, cut.grids.position_m, 2,
+                                  [](const BallState& s) -> const Vec3& { return s.position; });
+  json["velocities"] = pack_states(trajectory, frames, cut.balls, axes, cut.grids.speed_mps, 1,
+                                   [](const BallState& s) -> const Vec3& { return s.velocity; });
+  if (scenario.effects.spin) {
+    json["spins"] = pack_states(trajectory, frames, cut.balls, turns, cut.grids.spin_radps, 1,
+                                [](const BallState& s) -> const Vec3& { return s.spin; });
+  }
+  json["energy"] = pack_energies(reference, trajectory, frames);
+  json["counted"] = pack_counted(trajectory, frames);
+  if (known == trajectory.frames()) add_impacts(json, scenario, trajectory, cut, limits.impacts);
+}
+
+Json event_json(const Event& event) {
+  Json json = {{"time", event.time}, {"ball", event.ball}};
+  for (const Action& action : event.actions) {
+    if (const auto* mass = std::get_if<ScaleMass>(&action)) json["scale_mass"] = mass->factor;
+    if (const auto* radius = std::get_if<ScaleRadius>(&action)) json["scale_radius"] = radius->factor;
+    if (const auto* set = std::get_if<SetVelocity>(&action))
+      json["set_velocity"] = vector_json(set->velocity);
+    if (const auto* set = std::get_if<SetPosition>(&action))
+      json["set_position"] = vector_json(set->position);
+    if (std::holds_alternative<AddBall>(action)) json["add_ball"] = true;
+    if (std::holds_alternative<RemoveBall>(action)) json["remove"] = true;
+  }
+  return json;
+}
+
+Json sheet_json(const Vec3& normal, double offset, double thickness) {
+  return {{"normal", vector_json(normal)}, {"offset", offset}, {"thickness", thickness}};
+}
+
+Json scene_json(const Scenario& scenario) {
+  Json json = {{"id", scenario.id},
+               {"title", scenario.title},
+               {"dimension", scenario.dimension},
+               {"duration", scenario.duration_s},
+               {"step", scenario.step_s},
+               {"spin", scenario.effects.spin},
+               {"collisions", scenario.effects.collisions},
+               {"restitution", scenario.ball_contact.restitution},
+               {"gravity", nullptr},
+               {"box", nullptr},
+               {"walls", Json::array()},
+               {"slabs", Json::array()},
+               {"barriers", Json::array()},
+               {"events", Json::array()}};
+  if (scenario.effects.gravity) json["gravity"] = vector_json(*scenario.effects.gravity);
+  if (scenario.box) {
+    json["box"] = {{"min", vector_json(scenario.box->min)}, {"max", vector_json(scenario.box->max)}};
+  }
+  for (const Wall& wall : scenario.walls) json["walls"].push_back(sheet_json(wall.normal, wall.offset, 0.0));
+  for (const Slab& slab : scenario.slabs) {
+    json["slabs"].push_back(sheet_json(slab.normal, slab.offset, slab.thickness));
+  }
+  for (const Barrier& barrier : scenario.barriers) {
+    Json sheet = sheet_json(barrier.normal, barrier.offset, barrier.thickness);
+    sheet["height"] = barrier.height;
+    sheet["hbar"] = barrier.hbar;
+    json["barriers"].push_back(std::move(sheet));
+  }
+  for (const Event& event : scenario.events) json["events"].push_back(event_json(event));
+  return json;
+}
+
+Json balls_json(const Scenario& scenario, std::size_t shown) {
+  std::vector<double> masses;
+  std::vector<double> radii;
+  std::vector<double> inertias;
+  for (std::size_t i = 0; i < shown; ++i) {
+    masses.push_back(scenario.balls[i].mass);
+    radii.push_back(scenario.balls[i].radius);
+    inertias.push_back(scenario.balls[i].inertia);
+  }
+  return {{"count", scenario.balls.size()},
+          {"shown", shown},
+          {"mass", pack_doubles(masses)},
+          {"radius", pack_doubles(radii)},
+          {"inertia", pack_doubles(inertias)}};
+}
+
+bool same_states(const Trajectory& a, const Trajectory& b) {
+  if (a.frames() != b.frames() || a.balls() != b.balls()) return false;
+  for (std::size_t k = 0; k < a.frames(); ++k) {
+    for (std::size_t i = 0; i < a.balls(); ++i) {
+      const BallState& s = a.frame(k)[i];
+      const BallState& t = b.frame(k)[i];
+      if (s.position != t.position || s.velocity != t.velocity || s.spin != t.spin) return false;
+    }
+    if (a.tally(k).impacts != b.tally(k).impacts) return false;
+  }
+  return true;
+}
+
+/// The runs, written one by one within the limit of bytes.
+class Runs {
+ public:
+  Runs(const Reference& reference, const Cut& cut, const PlaybackLimits& limits)
+      : reference_(reference), cut_(cut), limits_(limits) {}
+
+  void add(Json about, const Trajectory& trajectory) {
+    const std::string label = about.at("label");
+    for (const auto& [other, states] : written_) {
+      if (!same_states(*states, trajectory)) continue;
+      about["same_as"] = other;
+      json_.push_back(std::move(about));
+      return;
+    }
+    add_states(about, reference_, trajectory, cut_, limits_);
+    const std::size_t bytes = about.dump().size();
+    if (!written_.empty() && bytes_ + bytes > limits_.bytes) {
+      left_out_.push_back(label);
+      return;
+    }
+    bytes_ += bytes;
+    written_.emplace_back(label, &trajectory);
+    json_.push_back(std::move(about));
+  }
+
+  void add_without_states(Json about) { json_.push_back(std::move(about)); }
+
+  Json take() { return std::move(json_); }
+  const std::vector<std::string>& left_out() const { return left_out_; }
+
+ private:
+  const Reference& reference_;
+  const Cut& cut_;
+  const PlaybackLimits& limits_;
+  Json json_ = Json::array();
+  std::size_t bytes_ = 0;
+  std::vector<std::pair<std::string, const Trajectory*>> written_;
+  std::vector<std::string> left_out_;
+};
+
+Json run_json(const Run& run) {
+  return {{"label", run.label()},       {"engine", run.engine},          {"profile", run.profile},
+          {"precision", run.precision}, {"status", name_of(run.status)}, {"reason", run.reason}};
+}
+
+/// Markup is escaped as JSON allows it, so that the text may stand in a page.
+std::string without_markup(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<' || c == '>' || c == '&') {
+      text += fmt::format("\\u{:04x}", static_cast<int>(c));
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::vector<const Trajectory*> played(const std::vector<const Run*>& runs, const Truth* truth) {
+  std::vector<const Trajectory*> trajectories;
+  if (truth != nullptr) trajectories.push_back(&truth->trajectory);
+  for (const Run* run : runs) {
+    if (plays(*run)) trajectories.push_back(&run->trajectory);
+  }
+  return trajectories;
+}
+
+}  // namespace
+
+std::string playback_json(const Scenario& scenario, const std::vector<const Run*>& runs, const Truth* truth,
+                          const PlaybackLimits& limits) {
+  if (truth != nullptr && (!truth->known() || truth->trajectory.frames() == 0)) truth = nullptr;
+  const Cut cut = cut_of(scenario, played(runs, truth), limits);
+  const Reference reference(scenario);
+  Runs written(reference, cut, limits);
+  if (truth != nullptr) {
+    written.add({{"label", "truth"}, {"engine", "truth"}, {"status", "ok"}, {"reason", truth->kind}},
+                truth->trajectory);
+  }
+  for (const Run* run : runs) {
+    if (plays(*run)) {
+      written.add(run_json(*run), run->trajectory);
+    } else {
+      written.add_without_states(run_json(*run));
+    }
+  }
+  Json json = {
+      {"format", "carom-playback-1"},
+      {"scene", scene_json(scenario)},
+      {"balls", balls_json(scenario, cut.balls)},
+      {"frames", {{"intervals", scenario.frames}, {"every", cut.every}, {"count", cut.frames.size()}}},
+      {"rounding",
+       {{"position_m", cut.grids.position_m},
+        {"speed_mps", cut.grids.speed_mps},
+        {"spin_radps", cut.grids.spin_radps}}},
+      {"runs", written.take()},
+      {"left_out", written.left_out()}};
+  return without_markup(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace carom

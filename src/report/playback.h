@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "trajectory/trajectory.h"
+#include "trajectory/truth.h"
+
+namespace carom {
+
+/// How much of a comparison goes into its playback. What is left out is said in it.
+struct PlaybackLimits {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  std::size_t balls = kNone;  ///< the first ones stay
+  std::size_t states =
+      kNone;  ///< of one run, balls times frames; frames are thinned evenly, the last one stays
+  std::size_t bytes = kNone;    ///< of all runs together; the first run stays, whatever it takes
+  std::size_t impacts = 20000;  ///< listed of one run; the first ones stay
+};
+
+/// The runs of a scene as the viewer (reports/web/viewer) plays them: one line of JSON without `<`, `>` and
+/// `&`, so that it may stand in a page. The runs come in the order given, the truth first where there is one.
+///
+///   format      "carom-playback-1"
+///   scene       id, title, dimension, duration and step (s), gravity, box, walls, slabs, barriers, spin,
+///   collisions, and
+///               events (time, ball, and the factors or states of its actions)
+///   balls       count (of all), shown, and of each that is shown mass (kg), radius (m), inertia: packed
+///   doubles frames      intervals (of the run), every: those kept are 0, every, 2 every, … and the last;
+///   count of those kept rounding    position_m, speed_mps, spin_radps: the grid on which these stand; each
+///   is off by at most half of it runs        label, status, reason, precision; of one that ended well either
+///   `same_as` (the label of a run with the
+///               same states, to the bit), or positions, velocities and spins (where balls can spin), energy
+///               (J, packed doubles: translation, rotation, potential of every frame, one after the other),
+///               counted (the impacts that the engine counted until each frame), impacts (times in units of
+///               duration · 2⁻³⁰; ball; other), impacts_left_out. The truth is labelled "truth" and may end
+///               earlier; `known` is its number of frames.
+///   left_out    labels of the runs that the limit of bytes leaves out
+///
+/// Integers and doubles are packed as in pack.h. Positions are whole multiples of rounding.position_m, second
+/// differences over the frames; velocities and spins first differences; balls follow each other, axes stand
+/// outside of balls. The grids are powers of two: positions at most 2⁻¹⁴ of the smallest radius, velocities
+/// at most 2⁻²⁰ of the largest speed, spins likewise (coarser only where a number would not fit into 31
+/// bits).
+std::string playback_json(const Scenario& scenario, const std::vector<const Run*>& runs,
+                          const Truth* truth = nullptr, const PlaybackLimits& limits = {});
+
+}  // namespace carom
