@@ -10,6 +10,7 @@
 #include "carom/broad_phase/sort_and_sweep.h"
 #include "carom/broad_phase/tree.h"
 #include "carom/broad_phase/uniform_grid.h"
+#include "carom/broad_phase/wrapped_grid.h"
 #include "carom/compose.h"
 #include "tests/support/scenes.h"
 
@@ -27,7 +28,7 @@ struct In {
 template <class CaseType>
 class BroadPhaseTwin : public testing::Test {};
 using Cases = testing::Types<In<UniformGrid, 2>, In<UniformGrid, 3>, In<Tree, 2>, In<Tree, 3>,
-                             In<SortAndSweep, 2>, In<SortAndSweep, 3>>;
+                             In<SortAndSweep, 2>, In<SortAndSweep, 3>, In<WrappedGrid, 2>, In<WrappedGrid, 3>>;
 TYPED_TEST_SUITE(BroadPhaseTwin, Cases);
 
 template <int Dim>
@@ -218,7 +219,8 @@ TYPED_TEST(TreeCells, AreCubesInsideTheFirst_AndHoldEveryBallOnce) {
 
 template <class CaseType>
 class BroadPhaseGrowth : public testing::Test {};
-using Linear = testing::Types<In<UniformGrid, 2>, In<UniformGrid, 3>, In<Tree, 2>, In<Tree, 3>>;
+using Linear = testing::Types<In<UniformGrid, 2>, In<UniformGrid, 3>, In<Tree, 2>, In<Tree, 3>,
+                              In<WrappedGrid, 2>, In<WrappedGrid, 3>>;
 TYPED_TEST_SUITE(BroadPhaseGrowth, Linear);
 
 /// Pair tests for equal balls that fill a tenth of a cube.

@@ -7,6 +7,7 @@
 #include "carom/broad_phase/sort_and_sweep.h"
 #include "carom/broad_phase/tree.h"
 #include "carom/broad_phase/uniform_grid.h"
+#include "carom/broad_phase/wrapped_grid.h"
 
 namespace carom {
 
@@ -56,7 +57,7 @@ Row<Dim> row() {
 template <int Dim>
 std::vector<Row<Dim>> rows() {
   return {row<Dim, BruteForce<Dim>>(), row<Dim, UniformGrid<Dim>>(), row<Dim, SortAndSweep<Dim>>(),
-          row<Dim, Tree<Dim>>()};
+          row<Dim, Tree<Dim>>(), row<Dim, WrappedGrid<Dim>>()};
 }
 
 template <int Dim>
@@ -77,7 +78,7 @@ template <int Dim>
 std::string_view suitable(const std::vector<Ball>& balls) {
   if (balls.size() <= kFewBalls) return BruteForce<Dim>::kName;
   if (balls.size() < kManyBalls) return SortAndSweep<Dim>::kName;
-  return size_spread(balls) <= kGridSpread ? UniformGrid<Dim>::kName : Tree<Dim>::kName;
+  return size_spread(balls) <= kGridSpread ? WrappedGrid<Dim>::kName : Tree<Dim>::kName;
 }
 
 }  // namespace
