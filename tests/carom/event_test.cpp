@@ -676,7 +676,7 @@ TEST(EventEvolver, Refuses_WithAReason) {
 // --- the queue
 
 TEST(EventQueue, FirstIsTheLowestKey_AsInASet_WhateverTheTimes) {
-  // Waits of one scale, of many scales, many equal ones and infinite ones, with the clock set back at times.
+  // Waits of one scale, of many scales, many equal ones and infinite ones.
   for (const int kind : {0, 1, 2, 3}) {
     SCOPED_TRACE(testing::Message() << "seed 1, kind " << kind);
     Random random(1);

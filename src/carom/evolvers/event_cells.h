@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "carom/evolvers/permute.h"
 #include "carom/world.h"
 
 namespace carom {
@@ -43,9 +44,13 @@ class EventCells {
   /// Whether the ball is in a cell, and has crossings.
   bool holds(std::uint32_t ball) const { return is_giant_[ball] == 0; }
 
-  /// The side of the ball's cell that faces down the axis, m.
-  double lower_face(std::uint32_t ball, int axis) const {
-    return origin_[axis] + width_ * static_cast<double>(cell_[ball][static_cast<std::size_t>(axis)]);
+  /// The lowest corner of the ball's cell, m.
+  Vec<Dim> lower_corner(std::uint32_t ball) const {
+    Vec<Dim> corner = origin_;
+    for (std::size_t k = 0; k < Dim; ++k) {
+      corner[static_cast<int>(k)] += width_ * static_cast<double>(cell_[ball][k]);
+    }
+    return corner;
   }
 
   /// Moves the ball to the next cell along the axis; direction is 1 or -1.
@@ -55,27 +60,42 @@ class EventCells {
     link(ball);
   }
 
-  /// Replaces `others` by all in the cells around the ball's own, and giants.
-  void find_near(std::uint32_t ball, std::vector<std::uint32_t>& others) const {
+  /// Writes down all in the cells around the ball's own, and giants; with them the ball itself. Returns the
+  /// part of the room that it took. @pre the room is for all balls and one more
+  std::span<std::uint32_t> find_near(std::uint32_t ball, std::span<std::uint32_t> room) const {
     if (!holds(ball)) {
-      others.resize(is_giant_.size());
-      std::iota(others.begin(), others.end(), 0U);
-      others.erase(others.begin() + ball);
-      return;
+      std::iota(room.begin(), room.end(), 0U);
+      return room.first(is_giant_.size());
     }
-    others = giants_;
-    std::array<Span, Dim> spans;
-    spans.fill({-1, 1});
-    gather_block(ball, spans, others);
+    std::copy(giants_.begin(), giants_.end(), room.begin());
+    return room.first(gather_block(ball, around_, room, giants_.size()));
   }
 
-  /// Replaces `others` by all in the cells that came near by a crossing.
-  void find_ahead(std::uint32_t ball, int axis, int direction, std::vector<std::uint32_t>& others) const {
-    others.clear();
-    std::array<Span, Dim> spans;
-    spans.fill({-1, 1});
+  /// The same with all in the cells that came near by a crossing.
+  std::span<std::uint32_t> find_ahead(std::uint32_t ball, int axis, int direction,
+                                      std::span<std::uint32_t> room) const {
+    std::array<Span, Dim> spans = around_;
     spans[static_cast<std::size_t>(axis)] = {direction, direction};
-    gather_block(ball, spans, others);
+    return room.first(gather_block(ball, spans, room, 0));
+  }
+
+  /// The balls in the order of the table, in which those that are near in space are near: giants first.
+  std::vector<std::uint32_t> order() const {
+    std::vector<std::uint32_t> balls = giants_;
+    balls.reserve(cell_.size());
+    for (const std::uint32_t head : heads_) {
+      for (std::uint32_t ball = head; ball != kNobody; ball = next_[ball]) balls.push_back(ball);
+    }
+    return balls;
+  }
+
+  /// Numbers the balls anew: ball `order[k]` becomes ball k. @pre from order()
+  void renumber(const std::vector<std::uint32_t>& order) {
+    permute(is_giant_, order);
+    permute(cell_, order);
+    std::iota(giants_.begin(), giants_.end(), 0U);
+    std::fill(heads_.begin(), heads_.end(), kNobody);
+    for (auto ball = static_cast<std::uint32_t>(giants_.size()); ball < cell_.size(); ++ball) link(ball);
   }
 
  private:
@@ -159,13 +179,29 @@ class EventCells {
     for (const int most = Dim + bit_width(cell_.size()); all_bits > most; --all_bits) {
       --*std::max_element(bits.begin(), bits.end());
     }
-    int shift = 0;
+    interleave(bits, all_bits);
+    heads_.assign(std::size_t{1} << static_cast<std::size_t>(all_bits), kNobody);
+  }
+
+  /// The number of an entry takes one bit of each axis in turn, so that entries that are near in space are
+  /// near in memory, along whichever axis. After G. M. Morton, "A computer oriented geodetic data base"
+  /// (IBM, 1966).
+  void interleave(std::array<int, Dim> bits, int all_bits) {
     for (std::size_t k = 0; k < Dim; ++k) {
-      shift_[k] = shift;
-      mask_[k] = ((std::size_t{1} << bits[k]) - 1) << shift;
-      shift += bits[k];
+      shares_[k].assign(std::size_t{1} << static_cast<std::size_t>(bits[k]), 0);
+      // An axis of one or two entries is all around with less than three of them.
+      around_[k] = {bits[k] == 0 ? 0 : -1, bits[k] < 2 ? 0 : 1};
     }
-    heads_.assign(std::size_t{1} << shift, kNobody);
+    std::size_t axis = 0;
+    std::array<int, Dim> taken{};
+    for (int bit = 0; bit < all_bits; ++bit) {
+      while (taken[axis] == bits[axis]) axis = (axis + 1) % Dim;
+      for (std::size_t number = 0; number < shares_[axis].size(); ++number) {
+        shares_[axis][number] |= static_cast<std::uint32_t>((number >> taken[axis]) & 1U) << bit;
+      }
+      ++taken[axis];
+      axis = (axis + 1) % Dim;
+    }
   }
 
   void place(std::uint32_t ball, const Vec<Dim>& position) {
@@ -178,13 +214,13 @@ class EventCells {
 
   static int bit_width(std::size_t number) { return static_cast<int>(std::bit_width(number)); }
 
-  /// The share of one axis in the number of a table entry: the cell's number, wrapped around.
-  std::size_t along(std::size_t axis, std::int64_t number) const {
-    return (static_cast<std::size_t>(number) << shift_[axis]) & mask_[axis];
+  /// The bits of one axis in the number of a table entry: those of the cell's number, wrapped around.
+  std::uint32_t along(std::size_t axis, std::int64_t number) const {
+    return shares_[axis][static_cast<std::size_t>(number) & (shares_[axis].size() - 1)];
   }
 
   std::uint32_t& head_of(std::uint32_t ball) {
-    std::size_t entry = 0;
+    std::uint32_t entry = 0;
     for (std::size_t k = 0; k < Dim; ++k) entry |= along(k, cell_[ball][k]);
     return heads_[entry];
   }
@@ -204,14 +240,20 @@ class EventCells {
     if (next != kNobody) previous_[next] = previous;
   }
 
-  void gather_block(std::uint32_t ball, const std::array<Span, Dim>& spans,
-                    std::vector<std::uint32_t>& others) const {
+  /// Writes down who is in a block of cells, from a place of the room on, and returns where they end. Whether
+  /// a cell is empty, and whether a ball is its last, is a toss of a coin, so that no branch is taken on it:
+  /// each is written, and kept if it is somebody. First come the heads, then whoever stands behind somebody.
+  std::size_t gather_block(std::uint32_t ball, const std::array<Span, Dim>& spans,
+                           std::span<std::uint32_t> room, std::size_t begin) const {
+    std::size_t end = begin;
+    const auto gather = [&](std::uint32_t other) {
+      room[end] = other;
+      end += other != kNobody ? 1 : 0;
+    };
     const Cell& cell = cell_[ball];
-    const auto gather_row = [&](std::size_t row) {
+    const auto gather_row = [&](std::uint32_t row) {
       for (std::int64_t x = cell[0] + spans[0].first; x <= cell[0] + spans[0].last; ++x) {
-        for (std::uint32_t other = heads_[row | along(0, x)]; other != kNobody; other = next_[other]) {
-          if (other != ball) others.push_back(other);
-        }
+        gather(heads_[row | along(0, x)]);
       }
     };
     for (std::int64_t y = cell[1] + spans[1].first; y <= cell[1] + spans[1].last; ++y) {
@@ -223,21 +265,23 @@ class EventCells {
         }
       }
     }
+    for (std::size_t k = begin; k < end; ++k) gather(next_[room[k]]);
+    return end;
   }
 
   std::vector<std::uint32_t> giants_;
   std::vector<std::uint8_t> is_giant_;
   std::vector<Cell> cell_;
-  std::vector<std::uint32_t> next_;      ///< ball in the same entry of the table
-  std::vector<std::uint32_t> previous_;  ///< the same, backwards
-  std::vector<std::uint32_t> heads_;     ///< the table: a ball in each entry
-  std::array<int, Dim> shift_{};         ///< where an axis stands in the number of an entry
-  std::array<std::size_t, Dim> mask_{};  ///< its bits
-  Vec<Dim> origin_;                      ///< m, where cells are counted from
-  Vec<Dim> extent_;                      ///< m, of the box that the balls stood in
-  double volume_ = 0.0;                  ///< m^Dim, of that box
-  double spacing_ = 0.0;                 ///< m, the width of a cell that holds kBallsInCell
-  double width_ = kNoCells;              ///< m, of a cell
+  std::vector<std::uint32_t> next_;                     ///< ball in the same entry of the table
+  std::vector<std::uint32_t> previous_;                 ///< the same, backwards
+  std::vector<std::uint32_t> heads_;                    ///< the table: a ball in each entry
+  std::array<std::vector<std::uint32_t>, Dim> shares_;  ///< of the cells along an axis in the entry's number
+  std::array<Span, Dim> around_{};                      ///< the cells around one
+  Vec<Dim> origin_;                                     ///< m, where cells are counted from
+  Vec<Dim> extent_;                                     ///< m, of the box that the balls stood in
+  double volume_ = 0.0;                                 ///< m^Dim, of that box
+  double spacing_ = 0.0;                                ///< m, the width of a cell that holds kBallsInCell
+  double width_ = kNoCells;                             ///< m, of a cell
 };
 
 }  // namespace carom

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ namespace carom {
 
 /// The evolver `event`: no steps, from impact to impact.
 ///
-/// What comes next for whom stands in event_plans.h.
+/// What comes next for whom stands in event_plans.h, and why it is built so in EVENT_SPEED.md.
 ///
 /// The time of an impact is computed from where both flights began, whoever looks and whenever, and flights
 /// end only by impacts: so trajectories are the same bits however advance() is cut, whatever the cells, and
@@ -36,18 +37,22 @@ namespace carom {
 ///
 /// Rest: under gravity (with elastic walls alone, see event_refusal()) a rebound that would not rise above
 /// the rounding of the ball's position is none: the wall bears the ball until it is hit.
-template <int Dim, bool kGravity, class Law>
+///
+/// @tparam Plans  who knows what comes next: EventPlans, or its slow twin EventSearch
+template <int Dim, bool kGravity, class Law, template <int, bool> class Plans = EventPlans>
 class EventEvolver final : public Simulation {
  public:
   explicit EventEvolver(const Scenario& scene)
       : flights_(scene),
-        plans_(scene, flights_),
+        times_(flights_, scene),
+        plans_(scene, flights_, times_),
         surface_(scene.ball_contact),
         wall_surface_(scene.wall_contact),
         step_s_(scene.step_s),
         window_s_(std::exp2(std::ceil(std::log2(kStepsInWindow * scene.step_s)))) {
     tally_.energy.known = true;
     if (std::min(surface_.restitution, wall_surface_.restitution) < 1.0) rapid_.assign(flights_.size(), 0);
+    renumber();
   }
 
   void advance(double step_s, std::int64_t steps) override {
@@ -55,13 +60,11 @@ class EventEvolver final : public Simulation {
     const double windows = std::floor(offset_s_ / window_s_);
     offset_s_ -= windows * window_s_;
     windows_ += windows;
-    while (true) {
-      const std::uint32_t ball = plans_.first();
-      if (ball == EventQueue::kNobody || plans_.time_s(ball) > now()) return;
-      if (plans_.time_s(ball) >= window_s_) {
-        rebase(plans_.time_s(ball));
+    while (const std::optional<EventMeeting> meeting = plans_.next(now())) {
+      if (meeting->time >= window_s_) {
+        rebase(meeting->time);
       } else {
-        carry_out(ball);
+        carry_out(*meeting);
       }
     }
   }
@@ -71,7 +74,7 @@ class EventEvolver final : public Simulation {
   Tally tally() const override {
     Tally tally = tally_;
     if constexpr (kGravity) {
-      for (std::uint32_t ball = 0; ball < flights_.size(); ++ball) flights_.add_push(ball, now(), tally);
+      flights_.add_pushes(now(), tally);
     }
     return tally;
   }
@@ -107,34 +110,35 @@ class EventEvolver final : public Simulation {
   static constexpr std::int64_t kMostAtOnceEach = 64;
   static constexpr double kAtOnceShare = 1e-9;
 
+  /// Of each ball, between renumberings: in a gas of half the closest density they lead it a few diameters
+  /// far, and to number it anew costs less than one.
+  static constexpr std::int64_t kImpactsInOrder = 10;
+
   /// The moment that advance() has led to, s.
   double now() const { return windows_ * window_s_ + offset_s_; }
 
-  void carry_out(std::uint32_t ball) {
-    guard_progress(ball);
-    const auto& plan = plans_.of(ball);
-    if (plan.crossing_time < plan.impact_time) {
-      plans_.cross(ball);
-    } else if (plans_.is_wall(plan.partner)) {
-      hit_wall(ball, plan.partner - plans_.balls(), plan.impact_time);
-    } else if (plans_.holds(plan)) {
-      hit_ball(std::min(ball, plan.partner), std::max(ball, plan.partner), plan.impact_time);
+  void carry_out(const EventMeeting& meeting) {
+    guard_progress(meeting);
+    if (meeting.partner >= flights_.size()) {
+      hit_wall(meeting.ball, meeting.partner - balls(), meeting.time);
+    } else if (name(meeting.ball) < name(meeting.partner)) {
+      hit_ball(meeting.ball, meeting.partner, meeting.time);
     } else {
-      plans_.plan_again(ball);
+      hit_ball(meeting.partner, meeting.ball, meeting.time);
     }
+    if (++since_renumbered_ > kImpactsInOrder * static_cast<std::int64_t>(balls())) renumber();
   }
 
-  void guard_progress(std::uint32_t ball) {
-    const double time = plans_.time_s(ball);
-    if (time > at_once_since_ + kAtOnceShare * step_s_) {
-      at_once_since_ = time;
+  void guard_progress(const EventMeeting& meeting) {
+    if (meeting.time > at_once_since_ + kAtOnceShare * step_s_) {
+      at_once_since_ = meeting.time;
       at_once_ = 0;
     }
-    if (++at_once_ <= kMostAtOnce + kMostAtOnceEach * static_cast<std::int64_t>(plans_.balls())) return;
+    if (++at_once_ <= kMostAtOnce + kMostAtOnceEach * static_cast<std::int64_t>(balls())) return;
     throw std::runtime_error(
-        fmt::format("time stands still after {} events at once, the last of ball {}: balls that lie against "
+        fmt::format("time stands still after {} impacts at once, the last of ball {}: balls that lie against "
                     "each other are beyond the event-driven evolver",
-                    at_once_, ball));
+                    at_once_, name(meeting.ball)));
   }
 
   /// Counts time from the window of `time_s` on: a whole number of windows, a power of two of seconds.
@@ -147,6 +151,19 @@ class EventEvolver final : public Simulation {
     at_once_since_ -= shift;
   }
 
+  /// Balls that are near in space are to be near in memory. It changes nothing but how long this takes.
+  void renumber() {
+    since_renumbered_ = 0;
+    const std::vector<std::uint32_t> order = plans_.order();
+    if (order.empty()) return;
+    flights_.renumber(order);
+    plans_.renumber(order);
+  }
+
+  std::uint32_t balls() const { return static_cast<std::uint32_t>(flights_.size()); }
+  /// A ball's number in the scene.
+  std::uint32_t name(std::uint32_t ball) const { return flights_.name(ball); }
+
   // --- impacts
 
   void hit_ball(std::uint32_t a, std::uint32_t b, double time_s) {
@@ -157,8 +174,9 @@ class EventEvolver final : public Simulation {
     const double v_n = normal.dot(at_b.v - at_a.v);
     if constexpr (kGravity) {
       if (ends_in_rest(v_n, normal.dot(at_b.a - at_a.a), at_a.x, flights_.radius(a))) {
-        throw std::runtime_error(fmt::format(
-            "ball {} comes to rest on ball {}: the event-driven evolver lays balls on walls only", a, b));
+        throw std::runtime_error(
+            fmt::format("ball {} comes to rest on ball {}: the event-driven evolver lays balls on walls only",
+                        name(a), name(b)));
       }
     }
     for (const std::uint32_t ball : {a, b}) end_flight(ball, time_s);
@@ -176,7 +194,7 @@ class EventEvolver final : public Simulation {
 
   void hit_wall(std::uint32_t ball, std::uint32_t wall, double time_s) {
     const Contact surface = surface_after(wall_surface_, time_s, {ball});
-    const Vec<Dim>& normal = plans_.wall(wall).normal;
+    const Vec<Dim>& normal = times_.wall(wall).normal;
     const std::uint32_t bearer = flights_.bearer(ball);
     const Motion<Dim> at = flights_.motion(ball, time_s);
     const double v_n = normal.dot(at.v);
@@ -219,10 +237,11 @@ class EventEvolver final : public Simulation {
     Contact result = surface;
     if (rapid_.empty()) return result;
     for (const std::uint32_t ball : hit) {
+      std::uint8_t& rapid = rapid_[name(ball)];
       if (time_s - flights_.clock(ball) >= kRapidShare * step_s_) {
-        rapid_[ball] = 0;
-      } else if (rapid_[ball] < kMostRapid) {
-        ++rapid_[ball];
+        rapid = 0;
+      } else if (rapid < kMostRapid) {
+        ++rapid;
       } else {
         result.restitution = 1.0;
       }
@@ -241,14 +260,15 @@ class EventEvolver final : public Simulation {
   void lay_down(std::uint32_t ball, std::uint32_t wall, std::uint32_t bearer) {
     if (bearer != flights_.kNoWall) {
       throw std::runtime_error(fmt::format(
-          "ball {} comes to rest in a corner: the event-driven evolver lays balls on one wall only", ball));
+          "ball {} comes to rest in a corner: the event-driven evolver lays balls on one wall only",
+          name(ball)));
     }
     if (Law::kFriction && wall_surface_.friction > 0.0) {
       throw std::runtime_error(fmt::format(
           "ball {} comes to lie on a wall with friction: the event-driven evolver lets balls only slide",
-          ball));
+          name(ball)));
     }
-    tally_.energy.wall_impacts_J += flights_.lay_on(ball, wall, plans_.wall(wall).normal);
+    tally_.energy.wall_impacts_J += flights_.lay_on(ball, wall, times_.wall(wall).normal);
   }
 
   // --- the account of walls and immovable balls
@@ -260,10 +280,11 @@ class EventEvolver final : public Simulation {
   }
 
   EventFlights<Dim, kGravity> flights_;
-  EventPlans<Dim, kGravity> plans_;
+  EventTimes<Dim, kGravity> times_;
+  Plans<Dim, kGravity> plans_;
   Contact surface_;
   Contact wall_surface_;
-  std::vector<std::uint8_t> rapid_;  ///< rapid impacts in a row, of each ball; empty where all are elastic
+  std::vector<std::uint8_t> rapid_;  ///< rapid impacts in a row, by name; empty where all are elastic
   double step_s_;
   Tally tally_ = {.walls_known = true};
 
@@ -273,6 +294,7 @@ class EventEvolver final : public Simulation {
   double offset_s_ = 0.0;
   double at_once_since_ = -kNever;
   std::int64_t at_once_ = 0;
+  std::int64_t since_renumbered_ = 0;  ///< impacts
 };
 
 }  // namespace carom

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "carom/evolvers/permute.h"
 #include "carom/flight.h"
 #include "carom/work.h"
 #include "carom/world.h"
@@ -19,6 +22,9 @@ namespace carom {
 /// for balls as they lie near each other, not by number, so that columns would cost a line for each
 /// component. What only an impact reads stands in columns.
 ///
+/// Balls are numbered anew now and then (renumber()), so that those that are near in space are near in
+/// memory; in what is ordered, and in what is told, each goes by its name, its number in the scene.
+///
 /// Clocks count from a moment that moves on with the run (rebase()), so that they stay short and keep their
 /// digits.
 template <int Dim, bool kGravity>
@@ -30,6 +36,8 @@ class EventFlights {
     for (std::size_t i = 0; i < world.size(); ++i) {
       bodies_.push_back({world.position[i], world.velocity[i], 0.0, world.radius[i]});
     }
+    name_.resize(world.size());
+    std::iota(name_.begin(), name_.end(), 0U);
     inverse_mass_ = world.inverse_mass;
     inverse_inertia_ = world.inverse_inertia;
     spin_ = world.spin;
@@ -37,6 +45,8 @@ class EventFlights {
   }
 
   std::size_t size() const { return bodies_.size(); }
+  /// The ball's number in the scene.
+  std::uint32_t name(std::uint32_t ball) const { return name_[ball]; }
   bool movable(std::uint32_t ball) const { return inverse_mass_[ball] > 0.0; }
   double radius(std::uint32_t ball) const { return bodies_[ball].radius; }
   double clock(std::uint32_t ball) const { return bodies_[ball].clock; }
@@ -56,6 +66,21 @@ class EventFlights {
     } else {
       return {body.x + tau * body.v, body.v, Vec<Dim>::Zero()};
     }
+  }
+
+  /// The same by components, `tau` seconds after the flight began, and without a store to memory between
+  /// them: for the sieve of EventTimes.
+  double place_after(double tau, std::uint32_t ball, int axis) const {
+    const Body& body = bodies_[ball];
+    if constexpr (kGravity) {
+      return body.x[axis] + tau * (body.v[axis] + (0.5 * tau) * accelerations_[way_[ball]][axis]);
+    } else {
+      return body.x[axis] + tau * body.v[axis];
+    }
+  }
+  double velocity_after(double tau, std::uint32_t ball, int axis) const {
+    if constexpr (kGravity) return bodies_[ball].v[axis] + tau * accelerations_[way_[ball]][axis];
+    return bodies_[ball].v[axis];
   }
 
   /// Begins a new flight where the old one has led. What bore the ball bears it no longer.
@@ -105,13 +130,27 @@ class EventFlights {
     for (Body& body : bodies_) body.clock -= shift_s;
   }
 
+  /// Numbers the balls anew: ball `order[k]` becomes ball k, and keeps its name. Columns that a scene has not
+  /// are empty.
+  void renumber(const std::vector<std::uint32_t>& order) {
+    permute(bodies_, order);
+    permute(name_, order);
+    permute(inverse_mass_, order);
+    if constexpr (kGravity) permute(way_, order);
+    if (inverse_inertia_.empty()) return;
+    permute(inverse_inertia_, order);
+    VectorColumn<kSpinAxes<Dim>> spin(size());
+    for (std::uint32_t k = 0; k < size(); ++k) spin.set(k, spin_[order[k]]);
+    spin_ = std::move(spin);
+  }
+
   void snapshot(double time_s, std::span<BallState> balls) const {
     for (std::uint32_t i = 0; i < size(); ++i) {
       const Motion<Dim> now = motion(i, time_s);
-      balls[i] = {widened<Dim>(now.x), widened<Dim>(now.v), Vec3::Zero()};
+      balls[name_[i]] = {widened<Dim>(now.x), widened<Dim>(now.v), Vec3::Zero()};
     }
     if (inverse_inertia_.empty()) return;
-    for (std::uint32_t i = 0; i < size(); ++i) balls[i].spin = widened_spin<Dim>(spin_[i]);
+    for (std::uint32_t i = 0; i < size(); ++i) balls[name_[i]].spin = widened_spin<Dim>(spin_[i]);
   }
 
   // --- balls at rest on a wall, under gravity
@@ -132,6 +171,13 @@ class EventFlights {
   std::uint32_t bearer(std::uint32_t ball) const {
     if constexpr (kGravity) return way_[ball] >= kFirstWall ? way_[ball] - kFirstWall : kNoWall;
     return kNoWall;
+  }
+
+  /// The same of all balls, in the scene's order.
+  void add_pushes(double time_s, Tally& tally) const {
+    std::vector<std::uint32_t> by_name(size());
+    for (std::uint32_t ball = 0; ball < size(); ++ball) by_name[name_[ball]] = ball;
+    for (const std::uint32_t ball : by_name) add_push(ball, time_s, tally);
   }
 
   /// Adds to the tally what the ball's bearer gives it until a time of its flight: with the constant force F
@@ -185,6 +231,7 @@ class EventFlights {
   }
 
   std::vector<Body> bodies_;
+  std::vector<std::uint32_t> name_;      ///< numbers in the scene
   std::vector<double> inverse_mass_;     ///< 1/kg
   VectorColumn<kSpinAxes<Dim>> spin_;    ///< rad/s, empty without spin
   std::vector<double> inverse_inertia_;  ///< 1/(kg m²), empty without spin

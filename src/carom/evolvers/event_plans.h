@@ -4,99 +4,108 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "carom/evolvers/event_cells.h"
 #include "carom/evolvers/event_flights.h"
+#include "carom/evolvers/event_plan.h"
 #include "carom/evolvers/event_queue.h"
 #include "carom/evolvers/event_times.h"
+#include "carom/evolvers/permute.h"
 
 namespace carom {
 
 /// What comes next for each ball of the event-driven evolver, and for which of them first.
 ///
-/// Every ball has one plan: the first impact that was seen when it was last looked at, with whom, and when it
-/// leaves its cell. A plan is made when a ball's flight begins, with all that are near; it grows when a ball
-/// crosses into new neighbours; and it is made again when its time comes and the other one's flight has
-/// changed meanwhile. Of any two balls that are near, the one whose flight began last, or that came near, has
-/// seen the other on its present flight: so the earliest impact of all is always the earliest of some plan.
-/// Source of the scheme: B. D. Lubachevsky, "How to simulate billiards and similar systems", J. Comput. Phys.
-/// 94, 255 (1991). Deviation: plans are not withdrawn when a partner is lost, but looked at when they come
-/// up.
+/// Every ball has one plan. It is made when the ball's flight begins, with all that are near; it grows when
+/// the ball crosses into new neighbours; and an impact is struck off when its time comes and the other one's
+/// flight has changed meanwhile. Of any two balls that are near, the one whose flight began last, or that
+/// came near, has seen the other on its present flight: so the earliest impact of all is always the earliest
+/// of some plan. Source of the scheme: B. D. Lubachevsky, "How to simulate billiards and similar systems",
+/// J. Comput. Phys. 94, 255 (1991). Deviation: plans are not withdrawn when a partner is lost, but looked at
+/// when they come up; and they hold more than one impact, so that there is mostly a next one.
+///
+/// A wall is looked at from cell to cell, as far as the ball's next crossing: most cells are far from all.
+///
+/// EventSearch, beside it, is the slow twin.
 template <int Dim, bool kGravity>
 class EventPlans {
  public:
-  /// What comes next for a ball. A partner from the number of balls on is a wall.
-  struct Plan {
-    double impact_time = kNever;    ///< s
-    double crossing_time = kNever;  ///< s, when the ball leaves its cell
-    std::uint32_t partner = 0;
-    std::uint32_t partner_flight = 0;  ///< of the partner, when the plan was made
-    std::uint32_t flight = 0;          ///< counts the ball's own
-    std::int16_t crossing_axis = 0;
-    std::int16_t crossing_direction = 0;
-  };
+  using Flights = EventFlights<Dim, kGravity>;
+  using Times = EventTimes<Dim, kGravity>;
 
-  /// The flights must outlive the plans.
-  EventPlans(const Scenario& scene, const EventFlights<Dim, kGravity>& flights)
-      : flights_(flights), times_(flights_, scene), plans_(scene.balls.size()), queue_(scene.balls.size()) {
-    for (const Wall& wall : scene.walls) walls_.push_back({flattened<Dim>(wall.normal), wall.offset});
+  /// Flights and times must outlive the plans.
+  EventPlans(const Scenario& scene, const Flights& flights, const Times& times)
+      : flights_(flights),
+        times_(times),
+        plans_(scene.balls.size()),
+        flight_(scene.balls.size()),
+        queue_(scene.balls.size()) {
     if (scene.effects.collisions) {
       const World<Dim> world(scene.balls);
       cells_.emplace(world.position, world.radius);
+      near_.resize(scene.balls.size() + 1);
     }
     for (std::uint32_t ball = 0; ball < balls(); ++ball) plan_flight(ball);
   }
 
-  std::uint32_t balls() const { return static_cast<std::uint32_t>(plans_.size()); }
-  bool is_wall(std::uint32_t partner) const { return partner >= balls(); }
-  const EventWall<Dim>& wall(std::uint32_t index) const { return walls_[index]; }
-  const Plan& of(std::uint32_t ball) const { return plans_[ball]; }
+  /// The next impact up to `limit_s`, if there is one.
+  std::optional<EventMeeting> next(double limit_s) {
+    while (true) {
+      const std::uint32_t ball = queue_.first();
+      if (ball == EventQueue::kNobody || queue_.key(ball).time > limit_s) return std::nullopt;
+      EventPlan& plan = plans_[ball];
+      const EventImpact& first = plan.first();
+      if (plan.crossing.time < first.time) {
+        cross(ball);
+      } else if (first.partner == ball) {
+        look_again(ball);
+      } else if (holds(first)) {
+        return EventMeeting{first.time, ball, first.partner};
+      } else {
+        strike_off(ball);
+      }
+    }
+  }
 
-  /// The ball whose plan comes first; EventQueue::kNobody where nothing will ever happen.
-  std::uint32_t first() { return queue_.first(); }
-  /// When its plan comes, s.
-  double time_s(std::uint32_t ball) const { return queue_.key(ball).time; }
+  /// The ball's flight has ended: what others planned with it holds no longer.
+  void end_flight(std::uint32_t ball) { ++flight_[ball]; }
 
-  /// Whether the partner, a ball, is still on the flight that the plan was made with.
-  bool holds(const Plan& plan) const { return plan.partner_flight == plans_[plan.partner].flight; }
-
-  /// The ball's flight has ended: plans with it hold no longer.
-  void end_flight(std::uint32_t ball) { ++plans_[ball].flight; }
-
-  /// An immovable ball that stands still has none: whoever comes sees it.
+  /// An immovable ball that stands still has no plan: whoever comes sees it.
   void plan_flight(std::uint32_t ball) {
     if (!flights_.movable(ball) && flights_.velocity(ball).isZero(0.0)) return;
-    plan_impact(ball);
     plan_crossing(ball, flights_.clock(ball));
-    enqueue(ball);
+    look_again(ball);
   }
 
-  /// The ball flies on, but its partner is lost.
-  void plan_again(std::uint32_t ball) {
-    plan_impact(ball);
-    enqueue(ball);
-  }
-
-  /// The ball goes over into the next cell, as planned, and sees who is near there.
-  void cross(std::uint32_t ball) {
-    const Plan& plan = plans_[ball];
-    const int axis = plan.crossing_axis;
-    const int direction = plan.crossing_direction;
-    cells_->cross(ball, axis, direction);
-    plan_crossing(ball, plan.crossing_time);
-    cells_->find_ahead(ball, axis, direction, near_);
-    consider_near(ball);
-    enqueue(ball);
-  }
-
-  /// Counts all times from a moment `shift_s` later.
+  /// Counts all times from a moment `shift_s` later. The flights have done so: what was seen is computed anew
+  /// from them, so that it has the bits that it would have had, had it been seen now.
   void rebase(double shift_s) {
-    for (Plan& plan : plans_) {
-      plan.impact_time -= shift_s;
-      plan.crossing_time -= shift_s;
+    for (std::uint32_t ball = 0; ball < balls(); ++ball) {
+      plans_[ball].crossing.time -= shift_s;
+      if (plans_[ball].first().time < kNever) see_all(ball);
     }
-    queue_.shift(shift_s);
+    enqueue_all();
+  }
+
+  /// An order of the balls in which those that are near in space follow each other; empty where there is
+  /// none.
+  std::vector<std::uint32_t> order() const { return cells_ ? cells_->order() : std::vector<std::uint32_t>(); }
+
+  /// Numbers the balls anew: ball `order[k]` becomes ball k. @pre from order(); the flights have done so
+  void renumber(const std::vector<std::uint32_t>& order) {
+    std::vector<std::uint32_t> number(order.size());
+    for (std::uint32_t k = 0; k < balls(); ++k) number[order[k]] = k;
+    permute(plans_, order);
+    permute(flight_, order);
+    for (EventPlan& plan : plans_) {
+      for (EventImpact& impact : plan.impacts) {
+        if (!is_wall(impact.partner)) impact.partner = number[impact.partner];
+      }
+    }
+    cells_->renumber(order);
+    enqueue_all();
   }
 
   void add_settings(Settings& settings) const {
@@ -106,77 +115,101 @@ class EventPlans {
   }
 
  private:
-  /// Among events of one time: by first ball, then balls before walls, then by second ball or wall.
-  static std::uint64_t rank(std::uint32_t ball, std::uint32_t partner) {
-    return (std::uint64_t{std::min(ball, partner)} << 32U) | std::max(ball, partner);
+  std::uint32_t balls() const { return static_cast<std::uint32_t>(plans_.size()); }
+  bool is_wall(std::uint32_t partner) const { return partner >= balls(); }
+
+  /// Whether the partner is still on the flight that it was seen on.
+  bool holds(const EventImpact& impact) const {
+    return is_wall(impact.partner) || impact.flight == flight_[impact.partner];
   }
 
-  void plan_impact(std::uint32_t ball) {
-    plans_[ball].impact_time = kNever;
-    if (flights_.movable(ball)) {
-      for (std::uint32_t wall = 0; wall < walls_.size(); ++wall) {
-        if (wall != flights_.bearer(ball)) consider(ball, balls() + wall, times_.to_wall(ball, walls_[wall]));
-      }
+  /// The ball goes over into the next cell, as planned, and sees who is near there.
+  void cross(std::uint32_t ball) {
+    const EventCrossing crossing = plans_[ball].crossing;
+    cells_->cross(ball, crossing.axis, crossing.direction);
+    plan_crossing(ball, crossing.time);
+    see_walls(ball);
+    see(ball, cells_->find_ahead(ball, crossing.axis, crossing.direction, near_));
+    enqueue(ball);
+  }
+
+  /// The partner has been hit by somebody else.
+  void strike_off(std::uint32_t ball) {
+    plans_[ball].drop_first();
+    enqueue(ball);
+  }
+
+  void look_again(std::uint32_t ball) {
+    see_all(ball);
+    enqueue(ball);
+  }
+
+  void see_all(std::uint32_t ball) {
+    plans_[ball].impacts = {};
+    see_walls(ball);
+    if (cells_) see(ball, cells_->find_near(ball, near_));
+  }
+
+  void see_walls(std::uint32_t ball) {
+    if (!flights_.movable(ball)) return;
+    for (std::uint32_t wall = 0; wall < times_.walls(); ++wall) {
+      if (wall == flights_.bearer(ball)) continue;
+      if (!times_.might_reach(ball, wall, plans_[ball].crossing.time)) continue;
+      plan_impact(ball, {times_.to_wall(ball, wall), balls() + wall});
     }
-    if (!cells_) return;
-    cells_->find_near(ball, near_);
-    consider_near(ball);
   }
 
   /// First all are sieved without a branch, as half of them part and most of the others miss, at random.
-  void consider_near(std::uint32_t ball) {
+  void see(std::uint32_t ball, std::span<std::uint32_t> others) {
     std::size_t left = 0;
-    for (const std::uint32_t other : near_) {
-      near_[left] = other;
+    for (const std::uint32_t other : others) {
+      others[left] = other;
       left += times_.might_touch(ball, other) ? 1 : 0;
     }
-    for (std::size_t k = 0; k < left; ++k) {
-      if (flights_.movable(ball) || flights_.movable(near_[k])) {
-        consider(ball, near_[k], times_.to_touch(ball, near_[k]));
-      }
+    for (const std::uint32_t other : others.first(left)) {
+      if (!flights_.movable(ball) && !flights_.movable(other)) continue;
+      plan_impact(ball, {times_.to_touch(ball, other), other, flight_[other]});
     }
   }
 
-  void consider(std::uint32_t ball, std::uint32_t partner, double time) {
-    Plan& plan = plans_[ball];
-    if (time > plan.impact_time || time == kNever) return;
-    if (time == plan.impact_time && rank(ball, plan.partner) < rank(ball, partner)) return;
-    plan.impact_time = time;
-    plan.partner = partner;
-    plan.partner_flight = is_wall(partner) ? 0 : plans_[partner].flight;
+  void plan_impact(std::uint32_t ball, const EventImpact& impact) {
+    if (impact.time == kNever) return;
+    plans_[ball].insert(ball, impact, [&](const EventImpact& a, const EventImpact& b) {
+      return name(a.partner) < name(b.partner);
+    });
   }
 
   void plan_crossing(std::uint32_t ball, double time_s) {
-    Plan& plan = plans_[ball];
-    plan.crossing_time = kNever;
     if (!cells_ || !cells_->holds(ball)) return;
-    for (int axis = 0; axis < Dim; ++axis) {
-      for (const int direction : {-1, 1}) {
-        const double side = cells_->lower_face(ball, axis) + (direction > 0 ? cells_->width_m() : 0.0);
-        const double time = times_.to_side(ball, axis, direction, side, time_s);
-        if (time >= plan.crossing_time) continue;
-        plan.crossing_time = time;
-        plan.crossing_axis = static_cast<std::int16_t>(axis);
-        plan.crossing_direction = static_cast<std::int16_t>(direction);
-      }
-    }
+    plans_[ball].crossing = times_.to_crossing(ball, cells_->lower_corner(ball), cells_->width_m(), time_s);
+  }
+
+  /// A ball's number in the scene; walls come after balls.
+  std::uint32_t name(std::uint32_t partner) const {
+    return is_wall(partner) ? partner : flights_.name(partner);
   }
 
   void enqueue(std::uint32_t ball) {
-    const Plan& plan = plans_[ball];
-    if (plan.crossing_time < plan.impact_time) {
-      queue_.set(ball, {plan.crossing_time, rank(ball, std::numeric_limits<std::uint32_t>::max())});
-    } else {
-      queue_.set(ball, {plan.impact_time, rank(ball, plan.partner)});
-    }
+    const EventPlan& plan = plans_[ball];
+    const EventImpact& first = plan.first();
+    const bool crosses = plan.crossing.time < first.time;
+    // To cross and to look again changes nothing: at one time these come before all impacts.
+    const bool is_impact = !crosses && first.partner != ball;
+    queue_.set(ball, {crosses ? plan.crossing.time : first.time,
+                      is_impact ? event_rank(flights_.name(ball), name(first.partner)) : 0});
   }
 
-  const EventFlights<Dim, kGravity>& flights_;
-  EventTimes<Dim, kGravity> times_;
+  void enqueue_all() {
+    queue_ = EventQueue(balls());
+    for (std::uint32_t ball = 0; ball < balls(); ++ball) enqueue(ball);
+  }
+
+  const Flights& flights_;
+  const Times& times_;
   std::optional<EventCells<Dim>> cells_;  ///< none where balls pass through each other
-  std::vector<EventWall<Dim>> walls_;
-  std::vector<Plan> plans_;
-  std::vector<std::uint32_t> near_;  ///< balls that are looked at
+  std::vector<EventPlan> plans_;
+  std::vector<std::uint32_t> flight_;  ///< counts the flights of each ball
+  std::vector<std::uint32_t> near_;    ///< room for the balls that are looked at
   EventQueue queue_;
 };
 

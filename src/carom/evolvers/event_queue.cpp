@@ -48,12 +48,6 @@ std::uint32_t EventQueue::first() {
   return heap_.front();
 }
 
-void EventQueue::shift(double shift_s) {
-  for (Key& key : keys_) key.time -= shift_s;
-  reopen();
-  pull_bucket();
-}
-
 // --- the calendar
 
 std::uint32_t EventQueue::bucket_of(double time_s) const {

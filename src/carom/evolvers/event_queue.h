@@ -37,9 +37,6 @@ class EventQueue {
 
   const Key& key(std::uint32_t ball) const { return keys_[ball]; }
 
-  /// Counts all times from a moment `shift_s` later.
-  void shift(double shift_s);
-
  private:
   /// A ball stands in a bucket's list, or in the heap: then `previous` is its place there.
   struct Link {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "carom/evolvers/event_flights.h"
 #include "carom/time_of_impact.h"
@@ -17,6 +18,13 @@ struct EventWall {
   double offset;  ///< m
 };
 
+/// When a ball leaves its cell, and by which side: up (direction 1) or down (-1) the axis.
+struct EventCrossing {
+  double time = kNever;  ///< s
+  std::int8_t axis = 0;
+  std::int8_t direction = 0;
+};
+
 /// When things will happen to balls on their present flights, on the flights' clocks, s; kNever where they do
 /// not. Times are computed from where flights began: they are the same bits whenever one asks.
 template <int Dim, bool kGravity>
@@ -25,30 +33,58 @@ class EventTimes {
   EventTimes(const EventFlights<Dim, kGravity>& flights, const Scenario& scene)
       : flights_(flights), step_s_(scene.step_s) {
     if constexpr (kGravity) field_speed_ = step_s_ * scene.effects.gravity->norm();
+    for (const Wall& wall : scene.walls) walls_.push_back({flattened<Dim>(wall.normal), wall.offset});
+  }
+
+  std::uint32_t walls() const { return static_cast<std::uint32_t>(walls_.size()); }
+  const EventWall<Dim>& wall(std::uint32_t index) const { return walls_[index]; }
+
+  /// False where the ball flies straight and does not reach the wall up to `until_s`, on its flight's clock.
+  /// It is asked of twice the way, so that rounding has no say.
+  bool might_reach(std::uint32_t ball, std::uint32_t index, double until_s) const {
+    if constexpr (kGravity) return true;
+    const EventWall<Dim>& wall = walls_[index];
+    const double clock = flights_.clock(ball);
+    const Motion<Dim> start = flights_.motion(ball, clock);
+    const double closing = -wall.normal.dot(start.v);
+    const double rounding_s = kEpsilon * (std::abs(clock) + std::abs(until_s));
+    return closing > 0.0 && gap(ball, start, wall) <= 2.0 * closing * (until_s - clock + rounding_s);
   }
 
   /// When the ball touches the wall.
-  double to_wall(std::uint32_t ball, const EventWall<Dim>& wall) const {
+  double to_wall(std::uint32_t ball, std::uint32_t index) const {
+    const EventWall<Dim>& wall = walls_[index];
     const double clock = flights_.clock(ball);
     const Motion<Dim> start = flights_.motion(ball, clock);
-    const double gap = wall.normal.dot(start.x) - wall.offset - flights_.radius(ball);
     const double rounding = velocity_rounding(start.v.norm() + field_speed_);
-    return clock + time_to_close(gap, wall.normal.dot(start.v), wall.normal.dot(start.a), rounding, step_s_);
+    return clock + time_to_close(gap(ball, start, wall), wall.normal.dot(start.v), wall.normal.dot(start.a),
+                                 rounding, step_s_);
   }
 
-  /// False where the balls part, or pass by more than rounding: d·w >= 0, or |d × w|² > |w|² σ². Says nothing
-  /// of those that are accelerated differently.
+  /// False where the balls part, or pass by more than rounding: with d from i to j and w its rate of change,
+  /// d·w >= 0, or by Lagrange's identity
+  ///   |d × w|² = d² w² - (d·w)² > w² σ².                                                  (1)
+  /// Says nothing of those that are accelerated differently.
   bool might_touch(std::uint32_t i, std::uint32_t j) const {
     constexpr double kRounding = 64.0 * kEpsilon;
-    const auto [a, b] = motions(i, j);
-    const Vec<Dim> d = b.x - a.x;
-    const Vec<Dim> w = b.v - a.v;
+    const double both = std::max(flights_.clock(i), flights_.clock(j));
+    const double tau_i = both - flights_.clock(i);
+    const double tau_j = both - flights_.clock(j);
+    double approach = 0.0;
+    double distance_2 = 0.0;
+    double speed_2 = 0.0;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const double d = flights_.place_after(tau_j, j, axis) - flights_.place_after(tau_i, i, axis);
+      const double w = flights_.velocity_after(tau_j, j, axis) - flights_.velocity_after(tau_i, i, axis);
+      approach += d * w;
+      distance_2 += d * d;
+      speed_2 += w * w;
+    }
     const double sigma = flights_.radius(i) + flights_.radius(j);
-    const bool approach = d.dot(w) < 0.0;
-    const double reach = w.squaredNorm() * (sigma * sigma + kRounding * d.squaredNorm());
-    const bool hit = cross_squared<Dim>(d, w) <= reach;
-    bool might = static_cast<bool>(static_cast<int>(approach) & static_cast<int>(hit));
-    if constexpr (kGravity) might = might || a.a != b.a;
+    const double beyond = (1.0 - kRounding) * distance_2 - sigma * sigma;
+    bool might = static_cast<bool>(static_cast<int>(approach < 0.0) &
+                                   static_cast<int>(beyond * speed_2 <= approach * approach));
+    if constexpr (kGravity) might = might || flights_.acceleration(i) != flights_.acceleration(j);
     return might;
   }
 
@@ -70,6 +106,27 @@ class EventTimes {
     return both + time_to_touch<Dim>(d, w, sigma, rounding);
   }
 
+  /// When the ball leaves a cell, after `time_s`.
+  /// @param lower  the cell's lowest corner, m
+  EventCrossing to_crossing(std::uint32_t ball, const Vec<Dim>& lower, double width_m, double time_s) const {
+    EventCrossing first;
+    for (int axis = 0; axis < Dim; ++axis) {
+      for (const int direction : {-1, 1}) {
+        const double side = direction > 0 ? lower[axis] + width_m : lower[axis];
+        const double time = to_side(ball, axis, direction, side, time_s);
+        if (time < first.time) {
+          first = {time, static_cast<std::int8_t>(axis), static_cast<std::int8_t>(direction)};
+        }
+      }
+    }
+    return first;
+  }
+
+ private:
+  double gap(std::uint32_t ball, const Motion<Dim>& motion, const EventWall<Dim>& wall) const {
+    return wall.normal.dot(motion.x) - wall.offset - flights_.radius(ball);
+  }
+
   /// When the ball passes a side of its cell on the way up (direction 1) or down (-1) the axis, after
   /// `time_s`. Straight flights pass the side that they head for, the others have passed it before.
   double to_side(std::uint32_t ball, int axis, int direction, double side, double time_s) const {
@@ -86,7 +143,6 @@ class EventTimes {
     }
   }
 
- private:
   /// Both balls when both are on their present flights.
   std::pair<Motion<Dim>, Motion<Dim>> motions(std::uint32_t i, std::uint32_t j) const {
     const double both = std::max(flights_.clock(i), flights_.clock(j));
@@ -100,6 +156,7 @@ class EventTimes {
   }
 
   const EventFlights<Dim, kGravity>& flights_;
+  std::vector<EventWall<Dim>> walls_;
   double step_s_;             ///< a time that counts, for telling motion from rounding
   double field_speed_ = 0.0;  ///< m/s, what gravity gives in it
 };

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace carom {
+
+/// Puts what stands at `order[k]` in place k. @pre the order is a permutation of all places
+template <class T>
+void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
+  std::vector<T> permuted;
+  permuted.reserve(values.size());
+  for (const std::uint32_t place : order) permuted.push_back(values[place]);
+  values.swap(permuted);
+}
+
+}  // namespace carom
