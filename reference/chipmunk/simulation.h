@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -54,7 +55,7 @@ class ChipmunkSimulation final : public Simulation {
   static Vec3 vec3(const cpVect& v) { return {v.x, v.y, 0.0}; }
   /// Of a shape: the balls count from 0, the walls go on after them.
   static std::uint32_t number_of(const cpShape* shape) {
-    return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(cpShapeGetUserData(shape)));
+    return *static_cast<const std::uint32_t*>(cpShapeGetUserData(shape));
   }
   BallState state_of(std::size_t ball) const {
     const cpBody* body = bodies_[ball].get();
@@ -84,7 +85,8 @@ class ChipmunkSimulation final : public Simulation {
   Setup setup_;
   reference::Account account_;
   reference::EnergyBook energy_;
-  std::vector<Body> bodies_;  // of the balls, in the scene's order
+  std::vector<std::uint32_t> numbers_;  // 0, 1, …, which the shapes point to
+  std::vector<Body> bodies_;            // of the balls, in the scene's order
   std::vector<Shape> shapes_;
   Space space_{cpSpaceNew()};  // refers to bodies and shapes, and so is freed before them
   std::unordered_map<cpArbiter*, Vec3> not_applied_;  // N s on b, of pairs that met again in this step
@@ -94,7 +96,9 @@ inline ChipmunkSimulation::ChipmunkSimulation(const Scenario& scene, const Setup
     : scene_(scene),
       setup_(setup),
       account_(scene, std::numeric_limits<cpFloat>::epsilon()),
-      energy_(scene, reference::EnergyBook::Moves::first) {
+      energy_(scene, reference::EnergyBook::Moves::first),
+      numbers_(scene.balls.size() + scene.walls.size()) {
+  std::iota(numbers_.begin(), numbers_.end(), 0U);
   configure_space();
   for (const Ball& ball : scene.balls) add_ball(ball);
   const reference::Reach reach = reference::reach_of(scene);
@@ -156,7 +160,7 @@ inline void ChipmunkSimulation::add_wall(const Wall& wall, const reference::Reac
 
 inline void ChipmunkSimulation::add_shape(cpShape* shape, std::size_t number, cpBitmask category,
                                           cpBitmask meets) {
-  cpShapeSetUserData(shape, reinterpret_cast<cpDataPointer>(number));
+  cpShapeSetUserData(shape, &numbers_[number]);
   cpShapeSetFilter(shape, cpShapeFilterNew(CP_NO_GROUP, category, meets));
   shapes_.emplace_back(cpSpaceAddShape(space_.get(), shape));
 }

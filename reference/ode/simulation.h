@@ -9,6 +9,7 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -67,7 +68,7 @@ class OdeSimulation final : public Simulation {
   static Vec3 vec3(const dReal* v) { return {v[0], v[1], v[2]}; }
   /// Of a geometry: the balls count from 0, the walls go on after them.
   static std::uint32_t number_of(dGeomID geometry) {
-    return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(dGeomGetData(geometry)));
+    return *static_cast<const std::uint32_t*>(dGeomGetData(geometry));
   }
   BallState state_of(std::size_t ball) const;
   bool is_movable(std::uint32_t number) const {
@@ -97,6 +98,7 @@ class OdeSimulation final : public Simulation {
   World world_{dWorldCreate()};
   GeomSpace space_{dHashSpaceCreate(nullptr)};
   Joints joints_{dJointGroupCreate(0)};
+  std::vector<std::uint32_t> numbers_;  // 0, 1, …, which the geometries point to
   std::vector<dBodyID>
       bodies_;                 // of the balls, in the scene's order; none where a ball stands still for ever
   std::deque<Touch> touches_;  // of the step at hand: ODE keeps pointers to them
@@ -104,7 +106,12 @@ class OdeSimulation final : public Simulation {
 };
 
 inline OdeSimulation::OdeSimulation(const Scenario& scene, const Setup& setup)
-    : scene_(scene), setup_(setup), account_(scene, std::numeric_limits<dReal>::epsilon()), energy_(scene) {
+    : scene_(scene),
+      setup_(setup),
+      account_(scene, std::numeric_limits<dReal>::epsilon()),
+      energy_(scene),
+      numbers_(scene.balls.size() + scene.walls.size()) {
+  std::iota(numbers_.begin(), numbers_.end(), 0U);
   configure_world();
   for (const Ball& ball : scene.balls) add_ball(ball);
   for (const Wall& wall : scene.walls) add_wall(wall);
@@ -125,7 +132,7 @@ inline void OdeSimulation::add_ball(const Ball& ball) {
   const bool immovable = std::isinf(ball.mass);
   const bool fixed = immovable && ball.velocity.isZero(0.0);
   dGeomID sphere = dCreateSphere(space_.get(), ball.radius);
-  dGeomSetData(sphere, reinterpret_cast<void*>(number));
+  dGeomSetData(sphere, &numbers_[number]);
   const unsigned long others = !scene_.effects.collisions ? 0 : immovable ? kMovable : kMovable | kImmovable;
   dGeomSetCategoryBits(sphere, immovable ? kImmovable : kMovable);
   dGeomSetCollideBits(sphere, immovable ? others : others | kWall);
@@ -160,7 +167,7 @@ inline void OdeSimulation::add_wall(const Wall& wall) {
   const Vec3& n = wall.normal;
   dGeomID plane = dCreatePlane(space_.get(), n.x(), n.y(), n.z(), wall.offset);
   const std::size_t number = scene_.balls.size() + static_cast<std::size_t>(&wall - scene_.walls.data());
-  dGeomSetData(plane, reinterpret_cast<void*>(number));
+  dGeomSetData(plane, &numbers_[number]);
   dGeomSetCategoryBits(plane, kWall);
   dGeomSetCollideBits(plane, kMovable);
 }
