@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
+#include "engine/tuning.h"
 #include "reference/box2d/simulation.h"
+#include "reference/common/iterations.h"
 
 namespace carom::box2d {
 
 namespace {
 
 /// Box2D 2.4: circles in the plane, in single precision, with a fixed step.
-class Box2dEngine final : public Engine {
+class Box2dEngine final : public Engine, public Tunable {
  public:
   EngineInfo info() const override {
     EngineInfo info;
@@ -69,6 +71,20 @@ class Box2dEngine final : public Engine {
     const Setup other = setup_for(scenario, reference::other_profile(profile));
     return std::make_unique<Box2dSimulation>(
         scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
+  }
+
+  bool takes_steps(const Scenario& /*scene*/) const override { return true; }
+  ClaimedOrder claimed_order(const Scenario& /*scene*/) const override { return 1; }
+
+  std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
+    return reference::iteration_tunings(setup_for(scene, profile).velocity_iterations);
+  }
+
+  std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,
+                                           const Tuned& tuned) const override {
+    Setup setup = setup_for(scene, profile);
+    setup.velocity_iterations = reference::iterations_of(tuned);
+    return std::make_unique<Box2dSimulation>(scene, setup);
   }
 };
 

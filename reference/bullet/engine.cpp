@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "engine/tuning.h"
 #include "reference/bullet/simulation.h"
+#include "reference/common/iterations.h"
 
 namespace carom::bullet {
 
@@ -17,7 +19,7 @@ constexpr const char* kPrecision = "float32";
 #endif
 
 /// Bullet 3: spheres in space or confined to a plane, with a fixed step. Compiled once per precision.
-class BulletEngine final : public Engine {
+class BulletEngine final : public Engine, public Tunable {
  public:
   EngineInfo info() const override {
     EngineInfo info;
@@ -85,6 +87,24 @@ class BulletEngine final : public Engine {
     const Setup other = setup_for(scenario, reference::other_profile(profile));
     return std::make_unique<BulletSimulation>(
         scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
+  }
+
+  bool takes_steps(const Scenario& /*scene*/) const override {
+    return true;
+  }
+  ClaimedOrder claimed_order(const Scenario& /*scene*/) const override {
+    return 1;
+  }
+
+  std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
+    return reference::iteration_tunings(setup_for(scene, profile).iterations);
+  }
+
+  std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,
+                                           const Tuned& tuned) const override {
+    Setup setup = setup_for(scene, profile);
+    setup.iterations = reference::iterations_of(tuned);
+    return std::make_unique<BulletSimulation>(scene, setup);
   }
 };
 

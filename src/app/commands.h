@@ -19,4 +19,8 @@ ExitCode compare_command(const Options& options);
 /// @throws InputError before anything is run; MachineError.
 ExitCode explain_command(const Options& options);
 
+/// carom study: what accuracy costs in time. A run that does not end well is a row of it and no violation.
+/// @throws InputError before anything is run or written; MachineError.
+ExitCode study_command(const Options& options);
+
 }  // namespace carom

@@ -31,6 +31,7 @@ Machine this_machine() {
   machine.compiler = fmt::format("GCC {}", __VERSION__);
 #endif
   machine.build = CAROM_BUILD_TYPE;
+  machine.flags = CAROM_BUILD_FLAGS;
   return machine;
 }
 

@@ -71,10 +71,10 @@ void add_scene_options(CLI::App& command, Options& options) {
   command.add_flag("--all-balls", options.all_balls, "list the final state of every ball in the JSON");
 }
 
-void add_common_options(CLI::App& command, Options& options) {
+void add_common_options(CLI::App& command, Options& options, double& timeout_s) {
   command.add_option("-j", options.parallel, "runs at a time (default: one for each core)")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--timeout", options.timeout_s, "the limit of one run in s")
+  command.add_option("--timeout", timeout_s, "the limit of one run in s")
       ->capture_default_str()
       ->check(number_from(1e-3, "a number of seconds >= 0.001"));
   command.add_option("--memory", options.memory_mib, "the memory limit of one run in MiB")
@@ -83,6 +83,37 @@ void add_common_options(CLI::App& command, Options& options) {
   command.add_flag("--quiet", options.quiet, "no progress, and no table where every gate holds");
   command.add_flag_callback(
       "--no-color", [&options] { options.color = false; }, "no colours (also: the NO_COLOR variable)");
+}
+
+void add_common_options(CLI::App& command, Options& options) {
+  add_common_options(command, options, options.timeout_s);
+}
+
+void add_study(CLI::App& app, Options& options) {
+  CLI::App* study = app.add_subcommand("study", "what accuracy costs in time: every step, every setting");
+  study->add_option("SCENE", options.scenes, "an id, a path, a group (impact/), or all")->required();
+  study
+      ->add_option("--engine", options.engines,
+                   "an engine, or engine@profile; may be given several times (default: carom's evolvers and "
+                   "every engine that was built)")
+      ->expected(1)
+      ->take_all();
+  study->add_option("--engines-from", options.engines_from, "a folder with further engine modules (*.so)")
+      ->expected(1)
+      ->take_all();
+  study->add_option("--seed", options.seed, "the seed of every generator, instead of the scene's")
+      ->check(seed());
+  study->add_option("--json", options.json_file, "write the study as JSON to this file")->check(not_empty());
+  study->add_option("--csv", options.csv_file, "write every point as CSV to this file")->check(not_empty());
+  study->add_option("--report", options.report_folder, "write the page DIR/index.html")->check(not_empty());
+  study
+      ->add_option("--resume", options.resume_file,
+                   "keep the study in this file while it goes, and take up what is in it")
+      ->check(not_empty());
+  study->add_option("--repeats", options.repeats, "timed runs of each setting")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  add_common_options(*study, options, options.study_timeout_s);
 }
 
 /// CLI11 prints help through exceptions as well; the code tells them apart.
@@ -126,6 +157,8 @@ Parsed parse_options(int argc, char** argv) {
   run->add_option("--csv", options.csv_folder, "write every trajectory as CSV below this folder")
       ->check(not_empty());
   run->add_option("--report", options.report_folder, "write the page DIR/index.html")->check(not_empty());
+  run->add_option("--study", options.study_file, "show this study (carom study --json) on the page, too")
+      ->check(not_empty());
   add_common_options(*run, options);
 
   CLI::App* check = app.add_subcommand("check", "the CI gate: as run, and says which gate is violated");
@@ -147,6 +180,8 @@ Parsed parse_options(int argc, char** argv) {
       ->check(not_empty());
   add_common_options(*check, options);
 
+  add_study(app, options);
+
   CLI::App* explain = app.add_subcommand("explain", "which of an engine's settings explains its divergence");
   explain->add_option("SCENE", options.scenes, "an id or a path")->required()->expected(1);
   explain->add_option("--engine", options.engines, "an engine, or engine@profile")->required()->expected(1);
@@ -158,8 +193,8 @@ Parsed parse_options(int argc, char** argv) {
   add_common_options(*explain, options);
 
   CLI::App* help = app.add_subcommand("help", "help on a command");
-  help->add_option("COMMAND", options.topic, "list, run, check, explain or help")
-      ->check(CLI::IsMember({"list", "run", "check", "explain", "help"}));
+  help->add_option("COMMAND", options.topic, "list, run, check, study, explain or help")
+      ->check(CLI::IsMember({"list", "run", "check", "study", "explain", "help"}));
 
   // Once a command line is parsed, help() is that of the command it names.
   const std::string overview = app.help();

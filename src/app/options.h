@@ -9,7 +9,7 @@ namespace carom {
 
 /// What the command line says.
 struct Options {
-  std::string command;  ///< "list", "run", "check", "explain" or "help"
+  std::string command;  ///< "list", "run", "check", "study", "explain" or "help"
   std::string topic;    ///< of list and help
 
   std::vector<std::string> scenes;
@@ -28,6 +28,12 @@ struct Options {
   std::string write_baseline_file;  ///< to write the results' values to
   std::optional<double> baseline_factor;
   bool all_balls = false;
+
+  std::string csv_file;     ///< of a study
+  std::string resume_file;  ///< that a study is kept in while it goes, and taken up from
+  std::string study_file;   ///< a study that the page shows, too
+  int repeats = 5;          ///< timed runs of each setting
+  double study_timeout_s = 2.0;
 
   int parallel = 1;
   double timeout_s = 120.0;

@@ -8,6 +8,7 @@
 #include "carom/compose.h"
 #include "carom/evolvers/list.h"
 #include "carom/textbook/textbook.h"
+#include "carom/tuning.h"
 
 namespace carom {
 
@@ -38,7 +39,7 @@ std::string about(const Variant& variant) {
   return "The hand-written engine: the most accurate evolver that the scene allows";
 }
 
-class CaromEngine final : public Engine {
+class CaromEngine final : public Engine, public Tunable {
  public:
   CaromEngine(std::string name, Variant variant) : name_(std::move(name)), variant_(std::move(variant)) {}
 
@@ -72,6 +73,24 @@ class CaromEngine final : public Engine {
 
   std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view /*profile*/) const override {
     return compose(scenario, variant_);
+  }
+
+  bool takes_steps(const Scenario& scenario) const override {
+    return choose_evolver(scenario, variant_).takes_steps;
+  }
+
+  ClaimedOrder claimed_order(const Scenario& scenario) const override {
+    const Evolver& evolver = choose_evolver(scenario, variant_);
+    return evolver.claimed_order == nullptr ? std::nullopt : evolver.claimed_order(scenario);
+  }
+
+  std::vector<Tuning> tunings(const Scenario& scenario, std::string_view /*profile*/) const override {
+    return variant_tunings(scenario, variant_);
+  }
+
+  std::unique_ptr<Simulation> create_tuned(const Scenario& scenario, std::string_view /*profile*/,
+                                           const Tuned& tuned) const override {
+    return compose_tuned(scenario, variant_, tuned);
   }
 
  private:

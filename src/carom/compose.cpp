@@ -8,10 +8,6 @@
 
 namespace carom {
 
-namespace {
-
-/// The evolver of that name; else the first that suits the scene, and has use for a broad phase that is
-/// named.
 const Evolver& choose_evolver(const Scenario& scene, const Variant& variant) {
   const auto chosen = [&](const Evolver& evolver) {
     if (!variant.evolver.empty()) return evolver.name == variant.evolver;
@@ -19,8 +15,6 @@ const Evolver& choose_evolver(const Scenario& scene, const Variant& variant) {
   };
   return *std::find_if(all_evolvers().begin(), all_evolvers().end(), chosen);
 }
-
-}  // namespace
 
 template <int Dim>
 Parts<Dim> make_parts(const Scenario& scene, const std::string& broad_phase) {

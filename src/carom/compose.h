@@ -18,6 +18,10 @@ struct Variant {
 template <int Dim>
 Parts<Dim> make_parts(const Scenario& scene, const std::string& broad_phase = {});
 
+/// The evolver of that name; else the first that suits the scene, and has use for a broad phase that is
+/// named.
+const Evolver& choose_evolver(const Scenario& scene, const Variant& variant);
+
 /// Why this variant does not take the scene; empty where it does.
 std::string refusal(const Scenario& scene, const Variant& variant);
 

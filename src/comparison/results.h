@@ -18,6 +18,7 @@ struct Machine {
   int cores = 1;
   std::string compiler;
   std::string build;  ///< CMake's build type
+  std::string flags = {};  ///< of the compiler, beside those that every build has
 };
 
 /// A reference engine that this build of the program lacks.

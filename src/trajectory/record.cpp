@@ -50,9 +50,7 @@ std::string record(const Scenario& scenario, const EngineChoice& choice, Traject
     return result.dump();
   }
 
-  const std::unique_ptr<Simulation> simulation =
-      choice.switched.empty() ? engine.create(scenario, choice.profile)
-                              : engine.create_switched(scenario, choice.profile, choice.switched);
+  const std::unique_ptr<Simulation> simulation = create_simulation(engine, scenario, choice);
   const std::int64_t steps = steps_per_frame(scenario);
   const double interval_s = scenario.duration_s / static_cast<double>(scenario.frames);
   double cpu_seconds = 0.0;
@@ -125,6 +123,15 @@ Trajectory::Trajectory(const Scenario& scenario)
       duration_s_(scenario.duration_s),
       states_(shared_array<BallState>(frames_ * balls_)),
       tallies_(shared_array<Tally>(frames_)) {}
+
+std::unique_ptr<Simulation> create_simulation(const Engine& engine, const Scenario& scenario,
+                                              const EngineChoice& choice) {
+  if (choice.tuned) {
+    return dynamic_cast<const Tunable&>(engine).create_tuned(scenario, choice.profile, *choice.tuned);
+  }
+  if (choice.switched.empty()) return engine.create(scenario, choice.profile);
+  return engine.create_switched(scenario, choice.profile, choice.switched);
+}
 
 std::int64_t steps_per_frame(const Scenario& scenario) {
   const double steps = scenario.duration_s / static_cast<double>(scenario.frames) / scenario.step_s;

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/engine.h"
+#include "engine/tuning.h"
 #include "trajectory/isolate.h"
 #include "trajectory/trajectory.h"
 
@@ -23,7 +26,12 @@ struct EngineChoice {
   std::string profile = "faithful";
   /// Settings that are as the engine's other profile has them; names from EngineInfo::switches.
   std::vector<std::string> switched = {};
+  std::optional<Tuned> tuned = {};  ///< a setting that is not as the profile has it
 };
+
+/// Sets the scene up as the choice says. @pre its engine is this one and can run the scene
+std::unique_ptr<Simulation> create_simulation(const Engine& engine, const Scenario& scenario,
+                                              const EngineChoice& choice);
 
 /// Runs the scene in every engine, each in a process of its own, and hands back one Run for each, in order.
 std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineChoice>& engines,

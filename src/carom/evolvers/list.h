@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,10 @@ struct Evolver {
   bool (*suits)(const Scenario& scene);
   std::unique_ptr<Simulation> (*make_2d)(const Scenario& scene, Parts<2> parts);
   std::unique_ptr<Simulation> (*make_3d)(const Scenario& scene, Parts<3> parts);
+  bool takes_steps = true;  ///< false where the step changes nothing
+  /// p where its error is claimed to fall like stepᵖ in the scene; nothing, or no function: exact but for
+  /// rounding.
+  std::optional<int> (*claimed_order)(const Scenario& scene) = nullptr;
 };
 
 /// Every evolver, the most accurate first: where the choice is left open, the first that suits the scene

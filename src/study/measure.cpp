@@ -1,0 +1,244 @@
+#include "study/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "comparison/compare.h"
+#include "comparison/predictability.h"
+#include "study/impact_times.h"
+#include "study/plan.h"
+#include "study/timing.h"
+
+namespace carom {
+
+namespace {
+
+/// A run of more than this gets kLongRepeats, its start and the resolution of the clock being nothing to it.
+constexpr double kLong_s = 0.1;
+constexpr int kLongRepeats = 3;
+/// Runs at a time that keep their trajectories until they are measured.
+constexpr std::size_t kAtOnce = 16;
+
+bool is_same(const StudyPoint& a, const StudyPoint& b) {
+  return a.engine == b.engine && a.setting == b.setting && a.steps_per_frame == b.steps_per_frame;
+}
+
+/// The last finite value; nothing where there is none.
+std::optional<double> last_known(const std::vector<double>& series) {
+  const auto last = std::find_if(series.rbegin(), series.rend(), [](double v) { return std::isfinite(v); });
+  return last == series.rend() ? std::nullopt : std::optional(*last);
+}
+
+class SceneStudy {
+ public:
+  SceneStudy(ScenarioPtr scene, const StudyLimits& limits, int parallel, const StudyWatch& watch,
+             StudyScene& into)
+      : scene_(std::move(scene)),
+        limits_{limits.timeout_s, limits.memory_mib},
+        repeats_(limits.repeats),
+        parallel_(parallel),
+        watch_(watch),
+        into_(into) {}
+
+  void describe() {
+    into_.id = scene_->id;
+    into_.title = scene_->title;
+    into_.sha256 = scene_->sha256;
+    into_.dimension = scene_->dimension;
+    into_.balls = scene_->balls.size();
+    into_.duration_s = scene_->duration_s;
+    into_.frames = scene_->frames;
+    into_.smallest_radius_m = std::numeric_limits<double>::infinity();
+    for (const Ball& ball : scene_->balls) {
+      into_.smallest_radius_m = std::min(into_.smallest_radius_m, ball.radius);
+    }
+  }
+
+  /// The truth is solved with a time limit of its own, however short that of a run is.
+  void solve(const std::vector<std::shared_ptr<const TruthSource>>& sources) {
+    SceneComparison solved = compare(
+        scene_, record_truth(*scene_, sources, {ProcessLimits().wall_seconds, limits_.memory_mib}), {}, {});
+    truth_ = std::move(solved.truth);
+    into_.truth = truth_.kind;
+    into_.no_truth = truth_.reason;
+    into_.uncertainty_m = truth_.uncertainty_m;
+    into_.horizon_s = truth_.horizon_s;
+  }
+
+  void plan(const std::vector<EngineChoice>& engines) {
+    const std::vector<Answer> answers =
+        ask_engines(*scene_, engines, {ProcessLimits().wall_seconds, limits_.memory_mib}, parallel_);
+    into_.engines.clear();
+    for (const Answer& answer : answers) into_.engines.push_back(answer.engine);
+    const std::vector<StudyPoint> before = std::exchange(into_.points, {});
+    for (PlannedPoint& each : plan_scene(*scene_, engines, answers)) {
+      const auto known = std::find_if(before.begin(), before.end(),
+                                      [&](const StudyPoint& point) { return is_same(point, each.point); });
+      into_.points.push_back(known == before.end() ? std::move(each.point) : *known);
+      choices_.push_back(std::move(each.choice));
+    }
+  }
+
+  void measure_errors() {
+    watch_.more(static_cast<std::size_t>(std::count_if(into_.points.begin(), into_.points.end(),
+                                                       [](const StudyPoint& p) { return !p.status; })));
+    std::size_t from = 0;
+    while (from < into_.points.size()) {
+      // Those of one step, for a finer one is foreseen by it; some at a time.
+      std::vector<std::size_t> some;
+      const std::int64_t steps = into_.points[from].steps_per_frame;
+      for (; from < into_.points.size() && some.size() < kAtOnce; ++from) {
+        if (into_.points[from].steps_per_frame != steps) break;
+        if (into_.points[from].status) continue;
+        if (is_foreseen_too_long(from)) continue;
+        some.push_back(from);
+      }
+      if (!some.empty()) run_some(some, with_steps(*scene_, steps));
+    }
+  }
+
+  void measure_times() {
+    std::size_t runs = 0;
+    for (const StudyPoint& point : into_.points) runs += static_cast<std::size_t>(missing_times(point));
+    watch_.more(runs);
+    for (int round = 0; round < repeats_; ++round) {
+      for (std::size_t i = 0; i < into_.points.size(); ++i) {
+        StudyPoint& point = into_.points[i];
+        const int done = static_cast<int>(point.cpu_s.size());
+        if (done > round || missing_times(point) == 0) continue;
+        time_once(point, choices_[i]);
+      }
+    }
+  }
+
+ private:
+  /// Of the same engine and setting at the last coarser step that was run.
+  const StudyPoint* coarser(std::size_t index) const {
+    const StudyPoint& point = into_.points[index];
+    const StudyPoint* found = nullptr;
+    for (std::size_t i = 0; i < index; ++i) {
+      const StudyPoint& other = into_.points[i];
+      if (other.engine == point.engine && other.setting == point.setting) found = &other;
+    }
+    return found;
+  }
+
+  bool is_foreseen_too_long(std::size_t index) {
+    const StudyPoint* before = coarser(index);
+    if (before == nullptr || !before->status) return false;
+    StudyPoint& point = into_.points[index];
+    const double finer =
+        static_cast<double>(point.steps_per_frame) / static_cast<double>(before->steps_per_frame);
+    const bool was_stopped = *before->status == RunStatus::timeout;
+    const double foreseen_s = before->recorded_cpu_s * finer;
+    if (!was_stopped && foreseen_s <= limits_.wall_seconds) return false;
+    point.status = RunStatus::timeout;
+    point.reason = was_stopped ? "a coarser step took longer than the limit already"
+                               : fmt::format("foreseen to take {:.2g} s, longer than {:g} s", foreseen_s,
+                                             limits_.wall_seconds);
+    watch_.done(point.engine);
+    return true;
+  }
+
+  void run_some(const std::vector<std::size_t>& which, const Scenario& scene) {
+    std::vector<EngineChoice> choices;
+    choices.reserve(which.size());
+    for (const std::size_t i : which) choices.push_back(choices_[i]);
+    std::vector<Run> runs = run_engines(scene, choices, limits_, parallel_, [&](std::size_t done) {
+      watch_.done(fmt::format("{}: errors of {}", scene_->id, into_.points[which[done]].engine));
+    });
+    for (std::size_t k = 0; k < which.size(); ++k) take(std::move(runs[k]), into_.points[which[k]]);
+    watch_.changed();
+  }
+
+  void take(Run run, StudyPoint& point) const {
+    point.status = run.status;
+    point.reason = run.reason;
+    point.version = run.version;
+    point.precision = run.precision;
+    point.steps = run.steps;
+    point.recorded_cpu_s = run.cpu_seconds;
+    if (run.status != RunStatus::ok) return;
+    point.impacts = run.trajectory.tally(run.trajectory.frames() - 1).impacts;
+    if (truth_.known()) {
+      point.errors.impact_time_s = impact_time_error_s(*scene_, truth_, run);
+      point.rounding_m = rounding_until_horizon_m(run);
+    }
+    const SceneComparison compared = compare(scene_, truth_, one(std::move(run)), {});
+    const RunComparison& result = compared.runs.front();
+    point.errors.position_m = result.metrics[Metric::position];
+    point.errors.final_position_m = last_known(result.series.position);
+    point.errors.energy =
+        result.metrics[Metric::energy] ? result.metrics[Metric::energy] : result.metrics[Metric::energy_gain];
+    point.errors.momentum = result.metrics[Metric::momentum];
+    point.errors.angular_momentum = result.metrics[Metric::angular_momentum];
+  }
+
+  static std::vector<Run> one(Run run) {
+    std::vector<Run> runs;
+    runs.push_back(std::move(run));
+    return runs;
+  }
+
+  double rounding_until_horizon_m(const Run& run) const {
+    const std::vector<double> growth = rounding_growth_m(*scene_, truth_, epsilon_of(run), run.steps);
+    double largest_m = 0.0;
+    for (std::size_t k = 0; k < growth.size(); ++k) {
+      if (truth_.trajectory.time(k) > truth_.horizon_s.value_or(scene_->duration_s)) break;
+      largest_m = std::max(largest_m, growth[k]);
+    }
+    return largest_m;
+  }
+
+  /// Timed runs that are still to be done.
+  int missing_times(const StudyPoint& point) const {
+    if (point.status != RunStatus::ok || !point.untimed.empty()) return 0;
+    const int asked = repeats_for(point.recorded_cpu_s, repeats_);
+    return std::max(asked - static_cast<int>(point.cpu_s.size()), 0);
+  }
+
+  void time_once(StudyPoint& point, const EngineChoice& choice) {
+    const Scenario scene = with_steps(*scene_, point.steps_per_frame);
+    // It warms up, runs, and repeats what is short; the limit is that of the run.
+    const ProcessLimits limits{2.0 * limits_.wall_seconds, limits_.memory_mib};
+    const ProcessOutcome outcome = time_isolated(scene, choice, limits);
+    if (outcome.end == ProcessEnd::finished) {
+      point.cpu_s.push_back(timing_from(outcome.payload).cpu_s);
+    } else {
+      point.untimed = outcome.reason;
+    }
+    watch_.done(fmt::format("{}: time of {}", scene_->id, point.engine));
+    watch_.changed();
+  }
+
+  ScenarioPtr scene_;
+  ProcessLimits limits_;
+  int repeats_;
+  int parallel_;
+  const StudyWatch& watch_;
+  StudyScene& into_;
+  Truth truth_;
+  std::vector<EngineChoice> choices_;  // of each point
+};
+
+}  // namespace
+
+int repeats_for(double cpu_s, int asked) {
+  return cpu_s > kLong_s ? std::min(asked, kLongRepeats) : asked;
+}
+
+void measure_scene(const ScenarioPtr& scene, const std::vector<EngineChoice>& engines,
+                   const std::vector<std::shared_ptr<const TruthSource>>& sources, const StudyLimits& limits,
+                   int parallel, const StudyWatch& watch, StudyScene& into) {
+  SceneStudy study(scene, limits, parallel, watch, into);
+  study.describe();
+  study.solve(sources);
+  study.plan(engines);
+  study.measure_errors();
+  study.measure_times();
+}
+
+}  // namespace carom
