@@ -39,7 +39,8 @@ class ToiEvolver final : public Simulation {
   using Law = typename Traits::Law;
 
   ToiEvolver(const Scenario& scene, Parts<kDim> parts)
-      : flights_(scene, std::move(parts.flight)),
+      : law_(law_of<Law>(parts)),
+        flights_(scene, std::move(parts.flight)),
         neighbours_(flights_, std::move(parts.broad_phase)),
         cluster_law_(std::move(parts.cluster_law)),
         planes_(planes_of<kDim>(scene.walls)),
@@ -250,7 +251,7 @@ class ToiEvolver final : public Simulation {
       resolve_touching(meeting);
     } else if (v_n < 0.0) {
       ++flights_.account().tally.impacts;
-      const Place impulse = Law::template between<kDim>(flights_.world(), a, b, normal, surface_);
+      const Place impulse = law_.template between<kDim>(flights_.world(), a, b, normal, surface_);
       flights_.account().template book_pair<Law::kFriction>(world(), a, b, normal, impulse);
       begin_flights({a, b});
     }
@@ -337,6 +338,7 @@ class ToiEvolver final : public Simulation {
 
   static constexpr std::uint32_t kEndless = std::numeric_limits<std::uint32_t>::max();
 
+  [[no_unique_address]] Law law_;
   Balls flights_;
   Neighbours<kDim, Balls> neighbours_;
   std::unique_ptr<ClusterLaw<kDim>> cluster_law_;
