@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <pugixml.hpp>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -339,6 +341,48 @@ TEST(Page, SaysWhereTheEnergyWent_WhereAnyDid) {
   pugi::xml_document body;
   ASSERT_NO_FATAL_FAILURE(parse_body(page, body));
   EXPECT_THAT(text_of(body), AllOf(HasSubstr("Where the energy went"), HasSubstr("−0.5"), HasSubstr("+0.1")));
+}
+
+/// The edges of the parts of each bar, left to right, as [from, to].
+std::vector<std::vector<std::pair<double, double>>> bars_of(const pugi::xml_document& body) {
+  std::vector<std::vector<std::pair<double, double>>> bars;
+  for (const auto& bar : body.select_nodes("//svg[@class='bar']")) {
+    std::vector<std::pair<double, double>> parts;
+    for (const auto& part : bar.node().select_nodes("rect")) {
+      const double left = part.node().attribute("x").as_double();
+      parts.emplace_back(left, left + part.node().attribute("width").as_double());
+    }
+    std::sort(parts.begin(), parts.end());
+    bars.push_back(parts);
+  }
+  return bars;
+}
+
+TEST(Page, DrawsEnergyByCause_OnOneScale_AndCutsWhatIsBeyondIt) {
+  Results results = usual_results();
+  const double start_J = 1.09;  // as above
+  results.scenes[0].runs[0].energy_split =
+      EnergySplit{0.1 * start_J, -0.2 * start_J, 0.0, -0.1 * start_J, 0.0};
+  results.scenes[0].runs[2].energy_split = EnergySplit{0.0, 0.0, 5.0 * start_J, 0.0, 0.0};
+  pugi::xml_document body;
+  ASSERT_NO_FATAL_FAILURE(parse_body(page_of(results), body));
+  const auto bars = bars_of(body);
+  ASSERT_EQ(bars.size(), 2U);
+  ASSERT_EQ(bars[0].size(), 3U);
+  ASSERT_EQ(bars[1].size(), 1U);
+  // Friction, ball impacts, zero, flight; from -0.3 to 1 there are 166 px. Numbers are rounded to tenths of a
+  // px.
+  const double share_px = 166.0 / 1.3;
+  constexpr double kRounding_px = 0.2;
+  EXPECT_NEAR(bars[0][0].second - bars[0][0].first, 0.1 * share_px, kRounding_px);
+  EXPECT_NEAR(bars[0][1].second - bars[0][1].first, 0.2 * share_px, kRounding_px);
+  EXPECT_NEAR(bars[0][1].second, bars[0][2].first, kRounding_px);
+  EXPECT_NEAR(bars[0][2].second - bars[0][2].first, 0.1 * share_px, kRounding_px);
+  EXPECT_NEAR(bars[1][0].first, bars[0][2].first, kRounding_px);
+  EXPECT_NEAR(bars[1][0].second - bars[1][0].first, share_px, kRounding_px);
+  EXPECT_EQ(body.select_nodes("//path[@class='beyond']").size(), 1U);
+  EXPECT_STREQ(body.select_node("//svg[@class='bar']/desc").node().child_value(),
+               "Lost: ball impacts 0.2, friction 0.1. Gained: flight 0.1. ");
 }
 
 TEST(Page, ShowsWhatImpactsDeliver_WhereItWasMeasured) {
