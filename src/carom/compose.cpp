@@ -17,12 +17,13 @@ const Evolver& choose_evolver(const Scenario& scene, const Variant& variant) {
 }
 
 template <int Dim>
-Parts<Dim> make_parts(const Scenario& scene, const std::string& broad_phase) {
-  return {make_broad_phase<Dim>(scene, broad_phase), make_flight<Dim>(scene), make_cluster_law<Dim>(scene)};
+Parts<Dim> make_parts(const Scenario& scene, const Variant& variant) {
+  return {make_broad_phase<Dim>(scene, variant.broad_phase), make_flight<Dim>(scene),
+          make_cluster_law<Dim>(scene), variant.skin};
 }
 
-template Parts<2> make_parts<2>(const Scenario&, const std::string&);
-template Parts<3> make_parts<3>(const Scenario&, const std::string&);
+template Parts<2> make_parts<2>(const Scenario&, const Variant&);
+template Parts<3> make_parts<3>(const Scenario&, const Variant&);
 
 std::string refusal(const Scenario& scene, const Variant& variant) {
   if (std::string reason = choose_evolver(scene, variant).refuses(scene); !reason.empty()) return reason;
@@ -37,8 +38,8 @@ std::string refusal(const Scenario& scene, const Variant& variant) {
 
 std::unique_ptr<Simulation> compose(const Scenario& scene, const Variant& variant) {
   const Evolver& evolver = choose_evolver(scene, variant);
-  if (scene.dimension == 2) return evolver.make_2d(scene, make_parts<2>(scene, variant.broad_phase));
-  return evolver.make_3d(scene, make_parts<3>(scene, variant.broad_phase));
+  if (scene.dimension == 2) return evolver.make_2d(scene, make_parts<2>(scene, variant));
+  return evolver.make_3d(scene, make_parts<3>(scene, variant));
 }
 
 }  // namespace carom

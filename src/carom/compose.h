@@ -12,11 +12,14 @@ namespace carom {
 struct Variant {
   std::string evolver;
   std::string broad_phase;
+  /// Of the evolvers of fixed steps: without the skin they look for pairs anew in every step. The result is
+  /// the same.
+  PairSkin skin = PairSkin::kChosen;
 };
 
-/// The parts that the scene calls for, with a broad phase by name or the one that suits it.
+/// The parts that the scene calls for, with the variant's broad phase or the one that suits the scene.
 template <int Dim>
-Parts<Dim> make_parts(const Scenario& scene, const std::string& broad_phase = {});
+Parts<Dim> make_parts(const Scenario& scene, const Variant& variant = {});
 
 /// The evolver of that name; else the first that suits the scene, and has use for a broad phase that is
 /// named.

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -81,12 +84,34 @@ class VectorColumn {
     for (int axis = 0; axis < Dim; ++axis) axes_[static_cast<std::size_t>(axis)][ball] = v[axis];
   }
 
+  /// Place k takes what stood at order[k]. @param spare  for use meanwhile
+  void reorder(std::span<const std::uint32_t> order, std::vector<double>& spare) {
+    for (std::vector<double>& axis : axes_) reordered(axis, order, spare);
+  }
+
+  static void reordered(std::vector<double>& column, std::span<const std::uint32_t> order,
+                        std::vector<double>& spare) {
+    spare.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) spare[k] = column[order[k]];
+    column.swap(spare);
+  }
+
   std::span<double> axis(int axis) { return axes_[static_cast<std::size_t>(axis)]; }
   std::span<const double> axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
 
  private:
   std::array<std::vector<double>, Dim> axes_;
 };
+
+/// The length of the longest vector; what is not a number counts for nothing.
+template <int Dim>
+double largest_norm(const VectorColumn<Dim>& vectors) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < vectors.axis(0).size(); ++i) {
+    largest = std::max(largest, vectors[i].squaredNorm());
+  }
+  return std::sqrt(largest);
+}
 
 /// Components of a spin: along z alone in 2D.
 template <int Dim>
@@ -105,6 +130,8 @@ struct World {
   std::vector<double> inverse_mass;     ///< 1/kg, 0 for an immovable ball
   VectorColumn<kSpinAxes<Dim>> spin;    ///< rad/s; empty without effects.spin
   std::vector<double> inverse_inertia;  ///< 1/(kg m²), 0 for an immovable ball; empty without effects.spin
+  /// The scene's number of the ball at each place, see reorder(); empty while it is the place.
+  std::vector<std::uint32_t> number;
 
   explicit World(const std::vector<Ball>& balls, bool spins = false)
       : position(balls.size()), velocity(balls.size()), spin(spins ? balls.size() : 0) {
@@ -127,12 +154,33 @@ struct World {
   std::size_t size() const { return radius.size(); }
   bool spins() const { return !inverse_inertia.empty(); }
 
+  /// What decides an order is the number that a ball has in the scene, wherever it stands in memory.
+  std::uint32_t number_of(std::size_t place) const {
+    return number.empty() ? static_cast<std::uint32_t>(place) : number[place];
+  }
+  bool before(std::size_t a, std::size_t b) const { return number_of(a) < number_of(b); }
+
+  /// Puts the ball at place order[k] to place k: balls that lie side by side in memory are loaded together.
+  void reorder(std::span<const std::uint32_t> order) {
+    std::vector<double> spare;
+    position.reorder(order, spare);
+    velocity.reorder(order, spare);
+    for (auto* column : {&radius, &inverse_mass}) VectorColumn<Dim>::reordered(*column, order, spare);
+    if (spins()) {
+      spin.reorder(order, spare);
+      VectorColumn<Dim>::reordered(inverse_inertia, order, spare);
+    }
+    std::vector<std::uint32_t> numbers(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) numbers[k] = number_of(order[k]);
+    number.swap(numbers);
+  }
+
   void snapshot(std::span<BallState> balls) const {
     for (std::size_t i = 0; i < size(); ++i) {
-      balls[i] = {widened<Dim>(position[i]), widened<Dim>(velocity[i]), Vec3::Zero()};
+      balls[number_of(i)] = {widened<Dim>(position[i]), widened<Dim>(velocity[i]), Vec3::Zero()};
     }
     if (!spins()) return;
-    for (std::size_t i = 0; i < size(); ++i) balls[i].spin = widened_spin<Dim>(spin[i]);
+    for (std::size_t i = 0; i < size(); ++i) balls[number_of(i)].spin = widened_spin<Dim>(spin[i]);
   }
 };
 

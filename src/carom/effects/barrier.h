@@ -67,7 +67,8 @@ class Barriers {
     const double v_n = face.normal.dot(world.velocity[ball]);
     const Vec<Dim> way = -2.0 * (face.depth + world.radius[ball]) * face.normal;
     const double fall = 2.0 * gravity_.dot(way);
-    const bool passes = draw(barrier, ball, meetings_[ball]++) < transmission(barrier, mass, v_n);
+    const std::uint32_t number = world.number_of(ball);
+    const bool passes = draw(barrier, number, meetings_[number]++) < transmission(barrier, mass, v_n);
     if (passes && v_n * v_n + fall > 0.0) {
       world.position.set(ball, world.position[ball] + way);
       account.book_moment(way, mass * world.velocity[ball]);
@@ -87,7 +88,7 @@ class Barriers {
   }
 
   std::vector<Barrier> barriers_;
-  std::vector<std::uint32_t> meetings_;  ///< of each ball; empty without barriers
+  std::vector<std::uint32_t> meetings_;  ///< of each ball by its number; empty without barriers
   Vec<Dim> gravity_;                     ///< m/s²
 };
 

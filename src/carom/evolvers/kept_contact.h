@@ -49,12 +49,14 @@ Eigen::SparseMatrix<double> directions_of(const std::vector<KeptContact<Dim>>& c
     balls.push_back(contact.a);
     if (!contact.wall) balls.push_back(contact.b);
   }
-  std::sort(balls.begin(), balls.end());
+  // By their numbers, so that sums do not depend on where balls stand in memory.
+  const auto before = [&world](std::uint32_t a, std::uint32_t b) { return world.before(a, b); };
+  std::sort(balls.begin(), balls.end(), before);
   balls.erase(std::unique(balls.begin(), balls.end()), balls.end());
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Eigen::Index column, std::uint32_t ball, const KeptContact<Dim>& contact, double sign,
                        const Vec<Dim>& direction) {
-    const auto row = kRows * (std::lower_bound(balls.begin(), balls.end(), ball) - balls.begin());
+    const auto row = kRows * (std::lower_bound(balls.begin(), balls.end(), ball, before) - balls.begin());
     const Vec<Dim> moved = (sign * std::sqrt(response(ball))) * direction;
     for (int axis = 0; axis < Dim; ++axis) entries.emplace_back(row + axis, column, moved[axis]);
     if constexpr (kColumns > 1) {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "carom/broad_phase/broad_phase.h"
+#include "carom/broad_phase/pair_list.h"
 #include "carom/flight.h"
 #include "carom/laws/cluster_law.h"
 
@@ -17,6 +17,7 @@ struct Parts {
   std::unique_ptr<BroadPhase<Dim>> broad_phase;
   std::unique_ptr<Flight<Dim>> flight;           ///< null: balls fly straight on
   std::unique_ptr<ClusterLaw<Dim>> cluster_law;  ///< null: sequential
+  PairSkin skin = PairSkin::kChosen;
   std::shared_ptr<LawFormula> law = nullptr;     ///< of a law from a file; null: the law is compiled in
 };
 

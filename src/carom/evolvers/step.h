@@ -5,9 +5,12 @@
 #include <cstdint>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "carom/broad_phase/pair_list.h"
+#include "carom/broad_phase/reach.h"
 #include "carom/effects/barrier.h"
 #include "carom/effects/slab.h"
 #include "carom/evolvers/parts.h"
@@ -40,7 +43,9 @@ class StepEvolver final : public Simulation {
 
   StepEvolver(const Scenario& scene, Parts<kDim> parts)
       : world_(scene.balls, scene.effects.spin),
-        parts_(std::move(parts)),
+        flight_(std::move(parts.flight)),
+        cluster_law_(std::move(parts.cluster_law)),
+        near_(std::move(parts.broad_phase), parts.skin),
         planes_(planes_of<kDim>(scene.walls)),
         barriers_(scene),
         surface_(scene.ball_contact),
@@ -68,8 +73,8 @@ class StepEvolver final : public Simulation {
   Settings settings() const override {
     return {{"evolver", std::string("step")},
             {"law", std::string(Law::kName)},
-            {"touching_law", std::string(parts_.cluster_law ? parts_.cluster_law->name() : "sequential")},
-            {"broad_phase", std::string(parts_.broad_phase->name())},
+            {"touching_law", std::string(cluster_law_ ? cluster_law_->name() : "sequential")},
+            {"broad_phase", std::string(near_.name())},
             {"most_sweeps", static_cast<double>(kMostSweeps)}};
   }
 
@@ -89,45 +94,67 @@ class StepEvolver final : public Simulation {
   void move(double step_s) {
     field_speed_ = 0.0;
     if constexpr (Traits::kAccelerates) {
-      parts_.flight->accelerations(world_, step_s, acceleration_);
-      double largest = 0.0;
+      flight_->accelerations(world_, step_s, acceleration_);
       for (std::size_t i = 0; i < world_.size(); ++i) {
         world_.velocity.set(i, world_.velocity[i] + step_s * acceleration_[i]);
-        largest = std::max(largest, acceleration_[i].squaredNorm());
       }
-      field_speed_ = step_s * std::sqrt(largest);
+      field_speed_ = step_s * largest_norm(acceleration_);
+      fastest_ = largest_norm(world_.velocity);
     }
     for (int axis = 0; axis < kDim; ++axis) {
       const std::span<double> x = world_.position.axis(axis);
       const std::span<const double> v = std::as_const(world_.velocity).axis(axis);
       for (std::size_t i = 0; i < world_.size(); ++i) x[i] += step_s * v[i];
     }
+    near_.travelled(step_s * fastest_);
   }
 
   void find_contacts() {
+    if (!near_.holds()) look_around();
     touches_.clear();
-    parts_.broad_phase->build(world_.position, world_.radius);
-    parts_.broad_phase->find_pairs(pairs_);
-    // The order of a broad phase is its own; the order of the contacts decides what happens.
-    std::sort(pairs_.begin(), pairs_.end());
-    for (const auto& [a, b] : pairs_) {
-      if (world_.inverse_mass[a] + world_.inverse_mass[b] > 0.0) touches_.push_back({a, b, false});
+    const std::span<const BallPair> pairs = near_.pairs();
+    for_each_passing(
+        pairs.size(), [&](std::size_t k) { return overlap(pairs[k].first, pairs[k].second); },
+        [&](std::size_t k) { touch(pairs[k].first, pairs[k].second); });
+    for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
+    // The list is in an order of its own; the order of the contacts decides what happens.
+    std::sort(touches_.begin(), touches_.end(),
+              [this](const Touch& x, const Touch& y) { return rank(x) < rank(y); });
+  }
+
+  void look_around() {
+    near_.sort(world_);
+    near_.build(world_, planes_, [](std::size_t) { return 0.0; });
+    fastest_ = largest_norm(world_.velocity);
+  }
+
+  bool overlap(std::uint32_t a, std::uint32_t b) const {
+    return may_meet<kDim>({world_.position[a], world_.radius[a]}, {world_.position[b], world_.radius[b]});
+  }
+
+  void touch(std::uint32_t a, std::uint32_t b) {
+    if (!world_.before(a, b)) std::swap(a, b);
+    if (world_.inverse_mass[a] + world_.inverse_mass[b] > 0.0) touches_.push_back({a, b, false});
+  }
+
+  void touch_plane(std::uint32_t ball, std::uint32_t plane) {
+    if (planes_[plane].gap(world_.position[ball], world_.radius[ball]) > 0.0) return;
+    if constexpr (Traits::kSheets) {
+      if (!planes_[plane].faces(world_.position[ball])) return;
     }
-    for (std::uint32_t plane = 0; plane < planes_.size(); ++plane) {
-      for (std::uint32_t ball = 0; ball < world_.size(); ++ball) {
-        if (planes_[plane].gap(world_.position[ball], world_.radius[ball]) > 0.0) continue;
-        if constexpr (Traits::kSheets) {
-          if (!planes_[plane].faces(world_.position[ball])) continue;
-        }
-        if (world_.inverse_mass[ball] > 0.0) touches_.push_back({ball, plane, true});
-      }
-    }
+    if (world_.inverse_mass[ball] > 0.0) touches_.push_back({ball, plane, true});
+  }
+
+  /// Pairs by their balls' numbers, then planes, each with its balls.
+  std::tuple<bool, std::uint32_t, std::uint32_t> rank(const Touch& touch) const {
+    const std::uint32_t a = world_.number_of(touch.a);
+    return touch.plane ? std::tuple(true, touch.b, a) : std::tuple(false, a, world_.number_of(touch.b));
   }
 
   // --- impacts
 
   void resolve_impacts() {
-    if (parts_.cluster_law) {
+    if (cluster_law_) {
       resolve_clusters();
       return;
     }
@@ -149,6 +176,8 @@ class StepEvolver final : public Simulation {
     count(v_n, sweep);
     const Place impulse =
         Law::template between<kDim>(world_, touch.a, touch.b, normal, rebounding(surface_, v_n));
+    note_speed(touch.a);
+    note_speed(touch.b);
     account_.template book_pair<Law::kFriction>(world_, touch.a, touch.b, normal, impulse);
     if constexpr (Law::kFriction) {
       if (!is_fixed(touch.a) && !is_fixed(touch.b)) {
@@ -168,16 +197,22 @@ class StepEvolver final : public Simulation {
     count(v_n, sweep);
     if constexpr (Traits::kSheets) {
       if (plane.barrier != kSolid) {
+        const Place before = world_.position[touch.a];
         barriers_.meet(world_, touch.a, plane, account_);
+        near_.jumped(touch.a, (world_.position[touch.a] - before).norm());
+        note_speed(touch.a);
         return true;
       }
     }
     const Place impulse =
         Law::template on_wall<kDim>(world_, touch.a, plane.normal, rebounding(wall_surface_, v_n));
+    note_speed(touch.a);
     if (is_impact(v_n, sweep)) ++account_.tally.wall_impacts;
     account_.template book_plane<Law::kFriction>(world_, touch.a, plane.normal, impulse);
     return true;
   }
+
+  void note_speed(std::uint32_t ball) { fastest_ = std::max(fastest_, world_.velocity[ball].norm()); }
 
   /// Rest has no rebound.
   Contact rebounding(Contact surface, double v_n) const {
@@ -199,11 +234,12 @@ class StepEvolver final : public Simulation {
     for (const Touch& touch : touches_) {
       // Immovable balls and planes pass nothing on.
       if (touch.plane || world_.inverse_mass[touch.a] * world_.inverse_mass[touch.b] == 0.0) continue;
-      const auto [low, high] = std::minmax({root_of(touch.a), root_of(touch.b)});
-      root_[high] = low;
+      const std::uint32_t one = root_of(touch.a);
+      const std::uint32_t other = root_of(touch.b);
+      world_.before(one, other) ? root_[other] = one : root_[one] = other;
     }
     const auto cluster_of = [this](const Touch& touch) {
-      return root_of(touch.plane || world_.inverse_mass[touch.a] > 0.0 ? touch.a : touch.b);
+      return world_.number_of(root_of(touch.plane || world_.inverse_mass[touch.a] > 0.0 ? touch.a : touch.b));
     };
     std::stable_sort(touches_.begin(), touches_.end(),
                      [&](const Touch& x, const Touch& y) { return cluster_of(x) < cluster_of(y); });
@@ -238,7 +274,11 @@ class StepEvolver final : public Simulation {
     }
     if (!approaching) return;
     account_.open_contacts(world_, contacts_);
-    parts_.cluster_law->resolve(world_, contacts_);
+    cluster_law_->resolve(world_, contacts_);
+    for (const ClosedContact<kDim>& contact : contacts_) {
+      note_speed(contact.a);
+      if (!contact.wall) note_speed(contact.b);
+    }
     account_.book_contacts(world_, contacts_);
   }
 
@@ -271,6 +311,7 @@ class StepEvolver final : public Simulation {
   /// energy.
   void shift(std::uint32_t ball, const Place& way) {
     world_.position.set(ball, world_.position[ball] + way);
+    near_.jumped(ball, way.norm());
     account_.book_moment(way, world_.velocity[ball] / world_.inverse_mass[ball]);
     if constexpr (Traits::kAccelerates) {
       account_.tally.energy.correction_J -= gravity_.dot(way) / world_.inverse_mass[ball];
@@ -284,7 +325,9 @@ class StepEvolver final : public Simulation {
   }
 
   World<kDim> world_;
-  Parts<kDim> parts_;
+  std::unique_ptr<Flight<kDim>> flight_;
+  std::unique_ptr<ClusterLaw<kDim>> cluster_law_;
+  PairList<kDim> near_;
   std::vector<Plane<kDim>> planes_;
   Barriers<kDim> barriers_;
   Contact surface_;
@@ -292,9 +335,9 @@ class StepEvolver final : public Simulation {
   Place gravity_;  ///< m/s²
   VectorColumn<kDim> acceleration_;
   double field_speed_ = 0.0;  ///< m/s, what the strongest acceleration gives in a step
+  double fastest_ = 0.0;      ///< m/s, no ball is faster
   Account<kDim> account_;
 
-  std::vector<BallPair> pairs_;
   std::vector<Touch> touches_;
   std::vector<std::uint32_t> root_;
   std::vector<ClosedContact<kDim>> contacts_;

@@ -37,7 +37,7 @@ class ImpactCluster {
       balls_.push_back(contact.a);
       if (!contact.wall) balls_.push_back(contact.b);
     }
-    std::sort(balls_.begin(), balls_.end());
+    std::sort(balls_.begin(), balls_.end(), before());
     balls_.erase(std::unique(balls_.begin(), balls_.end()), balls_.end());
     for (const std::uint32_t ball : balls_) speed_.push_back(world.velocity[ball].norm());
   }
@@ -110,7 +110,12 @@ class ImpactCluster {
 
   /// Of a ball among those of the cluster.
   std::size_t number_of(std::uint32_t ball) const {
-    return static_cast<std::size_t>(std::lower_bound(balls_.begin(), balls_.end(), ball) - balls_.begin());
+    const auto found = std::lower_bound(balls_.begin(), balls_.end(), ball, before());
+    return static_cast<std::size_t>(found - balls_.begin());
+  }
+
+  auto before() const {
+    return [this](std::uint32_t a, std::uint32_t b) { return world_.before(a, b); };
   }
 
   /// B of solve_complementarity().
@@ -150,7 +155,7 @@ class ImpactCluster {
 
   World<Dim>& world_;
   std::span<ClosedContact<Dim>> contacts_;
-  std::vector<std::uint32_t> balls_;  ///< of the cluster, sorted
+  std::vector<std::uint32_t> balls_;  ///< of the cluster, sorted by their numbers
   std::vector<double> speed_;  ///< m/s: of each, with all that it was changed by; what rounding goes by
 };
 

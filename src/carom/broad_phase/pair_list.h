@@ -1,0 +1,177 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "carom/broad_phase/broad_phase.h"
+#include "carom/plane.h"
+#include "carom/world.h"
+
+namespace carom {
+
+/// Calls at(k) for every k < count that passes the test. No branch hangs on what the test says: of many that
+/// fail few pass, and which ones no processor can foresee.
+template <class Test, class At>
+void for_each_passing(std::size_t count, const Test& test, const At& at) {
+  constexpr std::size_t kBlock = 256;
+  std::array<std::size_t, kBlock> passing;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    const std::size_t end = std::min(first + kBlock, count);
+    std::size_t found = 0;
+    for (std::size_t k = first; k < end; ++k) {
+      passing[found] = k;
+      found += test(k) ? 1U : 0U;
+    }
+    for (std::size_t n = 0; n < found; ++n) at(passing[n]);
+  }
+}
+
+enum class PairSkin { kChosen, kNone };
+
+/// The pairs of balls, and of balls and planes, that may touch before long: a list that serves many steps.
+///
+/// The trick: a broad phase is asked for all pairs that come as near as the sum of their radii and a *skin*
+/// s. Until some ball has moved by s/2 no other pair can touch, for two balls come nearer to each other by at
+/// most s. So the list is made anew only when the longest way that any ball may have gone comes to s/2; and
+/// that way is known from the largest speed, without a look at any ball. Source: L. Verlet, Phys. Rev. 159,
+/// 98 (1967).
+///
+/// The skin decides what is looked at, never what happens: whoever takes pairs from here tests them as if
+/// they came from a broad phase that was built in this step. With the skin kNone they do: that is the slow
+/// twin, and tests hold both to the same bits.
+template <int Dim>
+class PairList {
+ public:
+  PairList(std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin)
+      : broad_phase_(std::move(broad_phase)), skin_(skin) {}
+
+  /// Whether balls that go at most this much farther, m, can touch only in pairs that the list has.
+  bool holds(double way_m = 0.0) const {
+    return (travelled_m_ + way_m) * kRoundUp + farthest_jump_m_ <= enough_m_;
+  }
+
+  /// Every ball has gone at most this far, m.
+  void travelled(double way_m) { travelled_m_ += way_m * kRoundUp + rounding_m_; }
+
+  /// A ball was put this far away, m, beside what it travels.
+  void jumped(std::size_t ball, double way_m) {
+    if (jumps_m_.empty()) jumps_m_.resize(bound_.size(), 0.0F);
+    jumps_m_[ball] = static_cast<float>((static_cast<double>(jumps_m_[ball]) + way_m) * kRoundUp);
+    farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
+  }
+
+  /// Now and then, before build(): sorts the balls in memory, so that those that are looked at together are
+  /// loaded together. Returns whether it did; then the list holds no more.
+  bool sort(World<Dim>& world) {
+    const std::span<const std::uint32_t> order = broad_phase_->order();
+    if (builds_in_this_order_ < kBuildsInAnOrder || order.empty()) return false;
+    world.reorder(order);
+    builds_in_this_order_ = 0;
+    enough_m_ = kNothingHolds;
+    return true;
+  }
+
+  /// Makes the list for the balls where they are.
+  /// @param way_m  of each ball, how far the list must hold, m
+  template <class Way>
+  void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, const Way& way_m) {
+    choose_skin(world);
+    bound_.resize(world.size());
+    for (std::size_t i = 0; i < bound_.size(); ++i) {
+      bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
+    }
+    broad_phase_->build(world.position, bound_);
+    broad_phase_->find_pairs(pairs_);
+    find_planes(world, planes);
+    forget_ways(world);
+    ++builds_in_this_order_;
+  }
+
+  /// Two balls that may touch.
+  std::span<const BallPair> pairs() const { return pairs_; }
+  /// A ball and a plane that may touch.
+  std::span<const BallPair> besides() const { return besides_; }
+
+  std::string_view name() const { return broad_phase_->name(); }
+  BroadPhase<Dim>& broad_phase() { return *broad_phase_; }
+  const BroadPhase<Dim>& broad_phase() const { return *broad_phase_; }
+  /// How far each ball may get from where it was when the list was made, and its radius; m.
+  std::vector<double>& bounds() { return bound_; }
+
+ private:
+  /// Pairs that the skin adds for each ball: more of them make every step dearer, fewer make lists shorter
+  /// lived.
+  static constexpr double kMorePairs = 1.0;
+  /// Half the skin of the first list, by the balls' mean radius.
+  static constexpr double kFirstGuess = 0.2;
+  /// Lists after which balls have left the order in which they were sorted.
+  static constexpr int kBuildsInAnOrder = 16;
+  /// For sums of ways, those of floats included: each addition is off by 2⁻²⁴ at most.
+  static constexpr double kRoundUp = 1.0 + 0x1p-20;
+  static constexpr double kNothingHolds = -1.0;
+
+  /// Half the skin that would have added kMorePairs for each ball to the pairs that touch, had the last list
+  /// been made with it: with n balls in a unit of space around each, ½ n C R^Dim pairs are nearer than R.
+  void choose_skin(const World<Dim>& world) {
+    if (skin_ == PairSkin::kNone || world.size() == 0) return;
+    double radii = 0.0;
+    for (const double radius : world.radius) radii += radius;
+    const double diameter = 2.0 * radii / static_cast<double>(world.size());
+    if (half_skin_m_ == 0.0) {
+      half_skin_m_ = 0.5 * kFirstGuess * diameter;
+      return;
+    }
+    const double volume = std::pow(diameter + 2.0 * half_skin_m_, Dim);
+    const double pairs_per_ball = static_cast<double>(pairs_.size() + 1) / static_cast<double>(world.size());
+    const double wanted = std::pow(diameter, Dim) + kMorePairs / pairs_per_ball * volume;
+    const double half_skin_m = 0.5 * (std::pow(wanted, 1.0 / Dim) - diameter);
+    half_skin_m_ = std::clamp(half_skin_m, 0.5 * half_skin_m_, 2.0 * half_skin_m_);
+  }
+
+  void find_planes(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
+    besides_.clear();
+    for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
+      for_each_passing(
+          world.size(),
+          [&](std::size_t ball) { return planes[plane].gap(world.position[ball], bound_[ball]) <= 0.0; },
+          [&](std::size_t ball) { besides_.emplace_back(static_cast<std::uint32_t>(ball), plane); });
+    }
+  }
+
+  /// Ways are counted from here. What is rounded, a few u = ε/2 each: the coordinates in every step; and the
+  /// tests of distances, here and where balls touch, which may differ by 8 u of the coordinates and bounds.
+  void forget_ways(const World<Dim>& world) {
+    double farthest = 0.0;
+    for (int axis = 0; axis < Dim; ++axis) {
+      for (const double place : world.position.axis(axis)) farthest = std::max(farthest, std::abs(place));
+    }
+    double widest = 0.0;
+    for (const double bound : bound_) widest = std::max(widest, bound);
+    rounding_m_ = 4.0 * kEpsilon * (farthest + widest);
+    enough_m_ = skin_ == PairSkin::kNone ? kNothingHolds : half_skin_m_ - 2.0 * rounding_m_;
+    travelled_m_ = 0.0;
+    farthest_jump_m_ = 0.0;
+    std::fill(jumps_m_.begin(), jumps_m_.end(), 0.0F);
+  }
+
+  std::unique_ptr<BroadPhase<Dim>> broad_phase_;
+  PairSkin skin_;
+  double half_skin_m_ = 0.0;
+  double enough_m_ = kNothingHolds;  ///< how far a ball may go until the list is worth nothing
+  double travelled_m_ = 0.0;
+  double rounding_m_ = 0.0;  ///< of coordinates, in a step
+  double farthest_jump_m_ = 0.0;
+  std::vector<float> jumps_m_;  ///< of each ball; empty before the first
+  std::vector<double> bound_;   ///< m
+  std::vector<BallPair> pairs_;
+  std::vector<BallPair> besides_;
+  int builds_in_this_order_ = kBuildsInAnOrder;
+};
+
+}  // namespace carom

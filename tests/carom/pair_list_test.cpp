@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "carom/compose.h"
+#include "tests/support/scenes.h"
+
+// A list of pairs that serves many steps, and balls that are sorted in memory on the way, change no bit:
+// beside each run stands its slow twin, which looks at all pairs anew in every step and leaves the balls
+// where they are.
+
+namespace carom::test {
+namespace {
+
+constexpr std::uint64_t kSeeds = 2;
+/// Long enough for dozens of lists, and so for balls that are sorted again and again.
+constexpr std::int64_t kSteps = 200;
+constexpr double kStep_s = 0.02;
+
+/// A gas in which a ball flies about a fiftieth of its radius in a step.
+ScenarioPtr slow_gas(int dimension, std::uint64_t seed, const std::string& more = "") {
+  return gas(dimension, 60, 0.2, dimension == 2 ? 25.0 : 12.0, seed, more);
+}
+
+/// What balls can be subject to that moves them, or makes them rest, in a way of its own.
+std::vector<std::pair<std::string, ScenarioPtr>> scenes_of(int dimension, std::uint64_t seed) {
+  const std::string down = dimension == 2 ? "[0.5, -9.81]" : "[0.5, -9.81, 0.25]";
+  const std::string along = dimension == 2 ? "[1, 0]" : "[1, 0, 0]";
+  const double middle = dimension == 2 ? 12.5 : 6.0;
+  std::vector<std::pair<std::string, ScenarioPtr>> scenes;
+  scenes.emplace_back("gas", slow_gas(dimension, seed));
+  scenes.emplace_back("pile", slow_gas(dimension, seed,
+                                       "[effects]\ngravity = " + down + "\nspin = true\n[contact]\n" +
+                                           "restitution = 0.6\nfriction = 0.3\n"));
+  scenes.emplace_back(
+      "smooth pile",
+      slow_gas(dimension, seed, "[effects]\ngravity = " + down + "\n[contact]\nrestitution = 0.5\n"));
+  scenes.emplace_back(
+      "touching law",
+      slow_gas(dimension, seed, "[effects]\ngravity = " + down + "\n[contact]\nlaw = \"simultaneous\"\n"));
+  scenes.emplace_back("barrier",
+                      slow_gas(dimension, seed,
+                               "[[barrier]]\nnormal = " + along + "\noffset = " + std::to_string(middle) +
+                                   "\nthickness = 0.05\nheight = 0.05\nhbar = 0.05\nseed = 1\n"));
+  auto mixed = std::make_shared<Scenario>(*scenes.front().second);
+  for (std::size_t i = 0; i < mixed->balls.size(); ++i) mixed->balls[i].radius *= i % 3 == 0 ? 1.0 : 0.05;
+  mixed->balls[7].velocity *= 40.0;
+  mixed->balls[0].mass = std::numeric_limits<double>::infinity();
+  scenes.emplace_back("sizes and speeds", mixed);
+  return scenes;
+}
+
+void expect_same_bits(const Tally& a, const Tally& b) {
+  EXPECT_EQ(a.impacts, b.impacts);
+  EXPECT_EQ(a.wall_impacts, b.wall_impacts);
+  EXPECT_EQ(a.wall_push_Ns, b.wall_push_Ns);
+  EXPECT_EQ(a.external_impulse, b.external_impulse);
+  EXPECT_EQ(a.external_angular_impulse, b.external_angular_impulse);
+  EXPECT_EQ(a.energy.ball_impacts_J, b.energy.ball_impacts_J);
+  EXPECT_EQ(a.energy.wall_impacts_J, b.energy.wall_impacts_J);
+  EXPECT_EQ(a.energy.friction_J, b.energy.friction_J);
+  EXPECT_EQ(a.energy.correction_J, b.energy.correction_J);
+}
+
+void expect_same_bits(const Scenario& scene, const Variant& fast, const Variant& slow) {
+  const auto one = compose(scene, fast);
+  const auto other = compose(scene, slow);
+  one->advance(kStep_s, kSteps);
+  other->advance(kStep_s, kSteps);
+  expect_same_bits(one->tally(), other->tally());
+  EXPECT_GT(one->tally().impacts, 0);
+  const auto a = states_of(*one, scene.balls.size());
+  const auto b = states_of(*other, scene.balls.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].position, b[i].position) << "ball " << i;
+    ASSERT_EQ(a[i].velocity, b[i].velocity) << "ball " << i;
+    ASSERT_EQ(a[i].spin, b[i].spin) << "ball " << i;
+  }
+}
+
+class PairListTwin : public testing::TestWithParam<std::tuple<std::string, int>> {};
+
+TEST_P(PairListTwin, SameBits_AsPairsFoundAnewInEveryStep) {
+  const auto& [evolver, dimension] = GetParam();
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    for (const auto& [name, scene] : scenes_of(dimension, seed)) {
+      SCOPED_TRACE(testing::Message() << name << ", seed " << seed);
+      expect_same_bits(*scene, {evolver, "wrapped-grid", PairSkin::kChosen},
+                       {evolver, "brute-force", PairSkin::kNone});
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Evolvers, PairListTwin,
+                         testing::Combine(testing::Values("step"), testing::Values(2, 3)),
+                         [](const auto& info) {
+                           return std::get<0>(info.param) + std::to_string(std::get<1>(info.param)) + "D";
+                         });
+
+}  // namespace
+}  // namespace carom::test
