@@ -140,7 +140,7 @@ function addReadout(figure) {
 addEventListener("DOMContentLoaded", () => {
   addThemeSwitch();
   addFilter();
-  document.querySelectorAll(".plot").forEach(addReadout);
+  document.querySelectorAll(".plot:has(svg.drawing[data-x])").forEach(addReadout);
 });
 
 // On paper nothing can be opened, so everything is.

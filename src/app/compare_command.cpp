@@ -90,7 +90,7 @@ void write_outputs(const Options& options, const Results& results) {
   }
   if (!options.report_folder.empty()) {
     const fs::path page = fs::path(options.report_folder) / "index.html";
-    write_file(page, render_page(results, web_folder()));
+    write_file(page, render_page(results, web_folder(), viewer_folder()));
     if (!options.quiet) fmt::print("The page is {}\n", page.string());
   }
 }

@@ -18,4 +18,9 @@ inline std::filesystem::path web_folder() {
   return program_prefix() / "share/carom/reports/web";
 }
 
+/// The viewer, made by the build from the web folder's sources; not there where the build has no node.
+inline std::filesystem::path viewer_folder() {
+  return program_prefix() / "lib/carom/web";
+}
+
 }  // namespace carom

@@ -213,11 +213,11 @@ SeenImpacts find_impacts(const Scenario& scenario, const Trajectory& trajectory,
         const Meeting who(impact.ball, impact.other);
         meeting.insert(who);
         if (held.contains(who) && interval.presses(static_cast<std::size_t>(impact.ball))) continue;
-        if (seen.impacts.size() < most) {
-          seen.impacts.push_back(impact);
-        } else {
-          ++seen.left_out;
+        if (seen.impacts.size() == most) {
+          seen.more = true;
+          return seen;
         }
+        seen.impacts.push_back(impact);
       }
     }
     held = std::move(meeting);

@@ -31,10 +31,10 @@ struct SeenImpact {
 /// stays on another, or on a wall, from frame to frame has one impact, its first. Impacts that come in one
 /// interval at the same contact are one.
 ///
-/// @param most  how many to look for; the rest is only counted
+/// @param most  how many to look for
 struct SeenImpacts {
   std::vector<SeenImpact> impacts;
-  std::size_t left_out = 0;
+  bool more = false;  ///< whether the search ended before the run did
 };
 SeenImpacts find_impacts(const Scenario& scenario, const Trajectory& trajectory, std::size_t most);
 

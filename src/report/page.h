@@ -8,8 +8,11 @@
 namespace carom {
 
 /// The report as one HTML file that needs nothing else: styles, script and plots are inside.
-/// @param web  the folder with the page's style sheet and script (reports/web)
+/// @param web     the folder with the page's style sheet and script (reports/web)
+/// @param viewer  the folder with the bundled viewer (report.js, report.css); where it is not there, scenes
+/// are not played
 /// @throws InputError where the web sources cannot be read.
-std::string render_page(const Results& results, const std::filesystem::path& web);
+std::string render_page(const Results& results, const std::filesystem::path& web,
+                        const std::filesystem::path& viewer = {});
 
 }  // namespace carom

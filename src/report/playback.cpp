@@ -18,9 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kPositionBits =
-    14;  // below the smallest radius: a tenth of a pixel where a ball is 1600 pixels wide
-constexpr int kSpeedBits = 20;        // below the largest speed: six digits
 constexpr double kLargest = 1 << 29;  // a first difference of two such numbers fits into 31 bits
 constexpr double kTimeUnits = 1 << 30;
 
@@ -66,7 +63,8 @@ std::size_t known_frames(const Trajectory& trajectory) {
   return trajectory.frames();
 }
 
-Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories) {
+Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories,
+               const PlaybackLimits& limits) {
   double radius = std::numeric_limits<double>::infinity();
   for (const Ball& ball : scenario.balls) radius = std::min(radius, ball.radius);
   double farthest = 0.0;
@@ -82,8 +80,9 @@ Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& t
       }
     }
   }
-  return {grid(std::ldexp(radius, -kPositionBits), farthest), grid(std::ldexp(fastest, -kSpeedBits), fastest),
-          grid(std::ldexp(spin, -kSpeedBits), spin)};
+  return {grid(std::ldexp(radius, -limits.position_bits), farthest),
+          grid(std::ldexp(fastest, -limits.speed_bits), fastest),
+          grid(std::ldexp(spin, -limits.speed_bits), spin)};
 }
 
 Cut cut_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories,
@@ -95,7 +94,7 @@ Cut cut_of(const Scenario& scenario, const std::vector<const Trajectory*>& traje
   cut.every = most > intervals ? 1 : (intervals + most - 2) / (most - 1);
   for (std::size_t k = 0; k < intervals; k += cut.every) cut.frames.push_back(k);
   cut.frames.push_back(intervals);
-  cut.grids = grids_of(scenario, trajectories);
+  cut.grids = grids_of(scenario, trajectories, limits);
   return cut;
 }
 
@@ -186,7 +185,7 @@ void add_impacts(Json& json, const Scenario& scenario, const Trajectory& traject
     }
   }
   json["impacts"] = pack_integers(numbers);
-  json["impacts_left_out"] = seen.left_out;
+  json["more_impacts"] = seen.more;
 }
 
 void add_states(Json& json, const Reference& reference, const Trajectory& trajectory, const Cut& cut,
@@ -363,8 +362,8 @@ std::vector<const Trajectory*> played(const std::vector<const Run*>& runs, const
 
 }  // namespace
 
-std::string playback_json(const Scenario& scenario, const std::vector<const Run*>& runs, const Truth* truth,
-                          const PlaybackLimits& limits) {
+PlaybackText write_playback(const Scenario& scenario, const std::vector<const Run*>& runs, const Truth* truth,
+                            const PlaybackLimits& limits) {
   if (truth != nullptr && (!truth->known() || truth->trajectory.frames() == 0)) truth = nullptr;
   const Cut cut = cut_of(scenario, played(runs, truth), limits);
   const Reference reference(scenario);
@@ -391,7 +390,7 @@ std::string playback_json(const Scenario& scenario, const std::vector<const Run*
         {"spin_radps", cut.grids.spin_radps}}},
       {"runs", written.take()},
       {"left_out", written.left_out()}};
-  return without_markup(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return {without_markup(json.dump(-1, ' ', false, Json::error_handler_t::replace)), written.left_out()};
 }
 
 }  // namespace carom

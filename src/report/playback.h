@@ -20,6 +20,8 @@ struct PlaybackLimits {
       kNone;  ///< of one run, balls times frames; frames are thinned evenly, the last one stays
   std::size_t bytes = kNone;    ///< of all runs together; the first run stays, whatever it takes
   std::size_t impacts = 20000;  ///< listed of one run; the first ones stay
+  int position_bits = 14;       ///< positions on a grid of 2^-bits of the smallest radius
+  int speed_bits = 20;          ///< velocities on one of 2^-bits of the largest speed, spins likewise
 };
 
 /// The runs of a scene as the viewer (reports/web/viewer) plays them: one line of JSON without `<`, `>` and
@@ -37,16 +39,26 @@ struct PlaybackLimits {
 ///               same states, to the bit), or positions, velocities and spins (where balls can spin), energy
 ///               (J, packed doubles: translation, rotation, potential of every frame, one after the other),
 ///               counted (the impacts that the engine counted until each frame), impacts (times in units of
-///               duration · 2⁻³⁰; ball; other), impacts_left_out. The truth is labelled "truth" and may end
-///               earlier; `known` is its number of frames.
+///               duration · 2⁻³⁰; ball; other), more_impacts: whether there are more. The truth is labelled
+///               "truth" and may end earlier; `known` is its number of frames.
 ///   left_out    labels of the runs that the limit of bytes leaves out
 ///
 /// Integers and doubles are packed as in pack.h. Positions are whole multiples of rounding.position_m, second
 /// differences over the frames; velocities and spins first differences; balls follow each other, axes stand
-/// outside of balls. The grids are powers of two: positions at most 2⁻¹⁴ of the smallest radius, velocities
-/// at most 2⁻²⁰ of the largest speed, spins likewise (coarser only where a number would not fit into 31
-/// bits).
-std::string playback_json(const Scenario& scenario, const std::vector<const Run*>& runs,
-                          const Truth* truth = nullptr, const PlaybackLimits& limits = {});
+/// outside of balls. The grids are powers of two: positions at most 2⁻¹⁴ of the smallest radius (unless the
+/// limits say otherwise), velocities at most 2⁻²⁰ of the largest speed, spins likewise (coarser only where a
+/// number would not fit into 31 bits).
+struct PlaybackText {
+  std::string json;
+  std::vector<std::string> left_out;  ///< labels of the runs that the limit of bytes leaves out
+};
+PlaybackText write_playback(const Scenario& scenario, const std::vector<const Run*>& runs,
+                            const Truth* truth = nullptr, const PlaybackLimits& limits = {});
+
+/// The same, where it is known to fit.
+inline std::string playback_json(const Scenario& scenario, const std::vector<const Run*>& runs,
+                                 const Truth* truth = nullptr, const PlaybackLimits& limits = {}) {
+  return write_playback(scenario, runs, truth, limits).json;
+}
 
 }  // namespace carom

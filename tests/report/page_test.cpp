@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <regex>
 #include <string>
@@ -13,6 +14,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/files.h"
+#include "core/random.h"
 
 namespace carom {
 namespace {
@@ -435,6 +438,86 @@ TEST(Page, StaysSmall_ForTwentyLongScenesInSevenEngines) {
   constexpr std::size_t kMiB = std::size_t{1} << 20U;
   const std::string page = page_of(results_of(std::move(scenes)));
   EXPECT_LT(page.size(), 4 * kMiB) << page.size();
+}
+
+/// A folder with a stand-in for the bundled viewer.
+class PageWithViewer : public testing::Test {
+ protected:
+  PageWithViewer() {
+    write_file(folder_ / "report.js", "/* the viewer */");
+    write_file(folder_ / "report.css", "/* its style */");
+  }
+  ~PageWithViewer() override { std::filesystem::remove_all(folder_); }
+
+  std::string page_of(const Results& results) const { return render_page(results, kWeb, folder_); }
+
+  /// The playbacks in a page.
+  static std::vector<std::string> playbacks(const std::string& page) {
+    std::vector<std::string> found;
+    pugi::xml_document body;
+    parse_body(page, body);
+    for (const auto& each : body.select_nodes("//script[@class='playback']")) {
+      found.emplace_back(each.node().child_value());
+    }
+    return found;
+  }
+
+ private:
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "carom-viewer-of-page-test";
+};
+
+TEST_F(PageWithViewer, HoldsTheViewer_AndARunOfEveryEngineThatEndedWell) {
+  const std::string page = page_of(usual_results());
+  EXPECT_THAT(page, AllOf(HasSubstr("/* the viewer */"), HasSubstr("/* its style */")));
+  const std::vector<std::string> found = playbacks(page);
+  ASSERT_EQ(found.size(), 3U);
+  const nlohmann::json first = nlohmann::json::parse(found[0]);
+  EXPECT_EQ(first["scene"]["id"], "impact/head-on");
+  std::vector<std::string> labels;
+  for (const auto& run : first["runs"]) labels.push_back(run["label"]);
+  EXPECT_THAT(labels, testing::ElementsAre("truth", "carom", "box2d", "chipmunk", "bullet", "box2d@default"));
+}
+
+TEST_F(PageWithViewer, StaysAPage_WhateverASceneIsCalled) {
+  SceneComparison hostile = every_verdict();
+  auto changed = std::make_shared<Scenario>(*hostile.scene);
+  changed->title = "</script><script>alert(1)</script> & <!--";
+  hostile.scene = changed;
+  const std::string page = page_of(results_of({hostile}));
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  const std::vector<std::string> found = playbacks(page);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(nlohmann::json::parse(found[0])["scene"]["title"], changed->title);
+}
+
+TEST_F(PageWithViewer, PlaysNothing_WhereNoRunEndedWell) {
+  const auto drop = scene("wall/drop", 2, 1, Vec3(0, -1, 0));
+  const RunComparison base = run_of(*drop, "x", "faithful", Verdict::error);
+  EXPECT_TRUE(
+      playbacks(page_of(results_of({comparison(drop, {stopped(base, RunStatus::crashed, "")})}))).empty());
+}
+
+// Nothing is easy to pack here: every ball goes somewhere else in each frame.
+TEST_F(PageWithViewer, TakesAtMostOneAndAHalfMegabytes_ForALargeScene) {
+  const auto large = scene("gas/large", 3, 1000, Vec3(1, 0.5, 0));
+  large->frames = 300;
+  Random random(3);
+  RunComparison run = run_of(*large, "carom", "faithful", Verdict::shown);
+  for (std::size_t k = 0; k < run.run.trajectory.frames(); ++k) {
+    for (BallState& ball : run.run.trajectory.frame(k)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        ball.position[axis] += random.uniform(-0.3, 0.3);
+        ball.velocity[axis] = random.uniform(-1.0, 1.0);
+      }
+    }
+  }
+  RunComparison other = run;
+  other.run.engine = "box2d";
+  other.run.trajectory = flight(*large, 0.0);
+  const std::vector<std::string> found = playbacks(page_of(results_of({comparison(large, {run, other})})));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_LT(found[0].size(), 1500000U);
+  EXPECT_GT(nlohmann::json::parse(found[0])["frames"]["every"], 1);
 }
 
 TEST(Page, SaysWhichFileIsMissing_WhereTheWebFolderIsNot) {

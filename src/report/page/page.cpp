@@ -22,13 +22,19 @@ namespace {
 
 using namespace page;
 
+bool has_viewer(const std::filesystem::path& viewer) {
+  return std::filesystem::exists(viewer / "report.js");
+}
+
 /// Style and script stand before the body and are not part of its tree: their text must not be escaped.
-std::string head(const std::filesystem::path& web) {
+std::string head(const std::filesystem::path& web, const std::filesystem::path& viewer) {
+  const std::string viewer_style = has_viewer(viewer) ? read_file(viewer / "report.css") : "";
+  const std::string viewer_script = has_viewer(viewer) ? read_file(viewer / "report.js") : "";
   return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
          "<title>Carom report</title>\n<style>\n" +
-         read_file(web / "page.css") + "</style>\n<script>\n" + read_file(web / "page.js") +
-         "</script>\n</head>\n";
+         read_file(web / "page.css") + viewer_style + "</style>\n<script>\n" + read_file(web / "page.js") +
+         viewer_script + "</script>\n</head>\n";
 }
 
 /// Counted by tests/benchmarks/run, and not there where that never ran.
@@ -73,7 +79,9 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
 
 }  // namespace
 
-std::string render_page(const Results& results, const std::filesystem::path& web) {
+std::string render_page(const Results& results, const std::filesystem::path& web,
+                        const std::filesystem::path& viewer) {
+  const bool plays = has_viewer(viewer);
   const Legend legend(results.scenes);
   pugi::xml_document document;
   Node body = document.append_child("body");
@@ -84,7 +92,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_survival(main, results, legend);
   add_coefficients(main, results.coefficients, legend);
   add_symmetries(main, results, legend);
-  for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend);
+  for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend, plays);
   add_textbook(main, results.textbook);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
@@ -93,7 +101,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_catches(main, catches_file(web));
   add_costs(main, costs_file(web));
   add_footer(body, results);
-  return head(web) + markup(body) + "\n</html>\n";
+  return head(web, viewer) + markup(body) + "\n</html>\n";
 }
 
 }  // namespace carom

@@ -8,6 +8,7 @@
 #include "report/page/energy_causes.h"
 #include "report/page/overview.h"
 #include "report/page/paths.h"
+#include "report/page/player.h"
 #include "report/page/plots.h"
 #include "report/page/statistics.h"
 #include "report/page/wording.h"
@@ -218,7 +219,7 @@ void add_settings(Node parent, const SceneComparison& scene) {
 
 }  // namespace
 
-void add_scene(Node parent, const SceneComparison& scene, const Legend& legend) {
+void add_scene(Node parent, const SceneComparison& scene, const Legend& legend, bool plays) {
   const std::string anchor = anchor_of(*scene.scene);
   const std::string title_id = anchor + "-title";
   Node section = add(parent, "section", {{"class", "scene"}, {"id", anchor}, {"aria-labelledby", title_id}});
@@ -233,6 +234,7 @@ void add_scene(Node parent, const SceneComparison& scene, const Legend& legend) 
   add_facts(section, scene);
   add_notes(section, *scene.scene);
   add_engine_list(section, scene, legend);
+  if (plays) add_player(section, scene);
   add_paths(section, scene, legend);
   add_plots(section, scene, legend);
   add_metrics(section, scene);

@@ -7,6 +7,6 @@
 namespace carom::page {
 
 /// Everything about one scene: what it is, how each engine did, the paths, the plots and the tables.
-void add_scene(Node parent, const SceneComparison& scene, const Legend& legend);
+void add_scene(Node parent, const SceneComparison& scene, const Legend& legend, bool plays);
 
 }  // namespace carom::page

@@ -1,0 +1,131 @@
+// Reads what src/report/playback.h writes. Runs in browsers and in node.
+
+async function inflate(text) {
+  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** Signed integers as pack_integers() packs them. */
+export async function unpackIntegers(text) {
+  const bytes = await inflate(text);
+  const count = bytes.length / 4;
+  const numbers = new Int32Array(count);
+  for (let i = 0; i < count; i += 1) {
+    const word = bytes[i] | bytes[count + i] << 8 | bytes[2 * count + i] << 16 | bytes[3 * count + i] << 24;
+    numbers[i] = word >>> 1 ^ -(word & 1);
+  }
+  return numbers;
+}
+
+/** Doubles as pack_doubles() packs them. */
+export async function unpackDoubles(text) {
+  const bytes = await inflate(text);
+  const count = bytes.length / 8;
+  const ordered = new Uint8Array(bytes.length);
+  for (let i = 0; i < count; i += 1) {
+    for (let byte = 0; byte < 8; byte += 1) ordered[8 * i + byte] = bytes[byte * count + i];
+  }
+  return new Float64Array(ordered.buffer);
+}
+
+/**
+ * A quantity of all balls in all frames, three numbers each: index 3 (frame * balls + ball) + axis.
+ * @param order 1: first differences over the frames, 2: second ones
+ */
+async function unpackStates(text, { frames, balls, axes, grid, order }) {
+  const numbers = await unpackIntegers(text);
+  const states = new Float64Array(3 * frames * balls);
+  let at = 0;
+  for (const axis of axes) {
+    for (let i = 0; i < balls; i += 1) {
+      let now = 0;
+      let change = 0;
+      for (let k = 0; k < frames; k += 1, at += 1) {
+        change = order === 2 ? change + numbers[at] | 0 : numbers[at];
+        now = now + change | 0;
+        states[3 * (k * balls + i) + axis] = now * grid;
+      }
+    }
+  }
+  return states;
+}
+
+const kTimeUnits = 2 ** 30;
+
+async function unpackImpacts(text, duration) {
+  const numbers = await unpackIntegers(text);
+  const count = numbers.length / 3;
+  const impacts = [];
+  let time = 0;
+  for (let i = 0; i < count; i += 1) {
+    time += numbers[i];
+    impacts.push({ time: time / kTimeUnits * duration, ball: numbers[count + i], other: numbers[2 * count + i] });
+  }
+  return impacts;
+}
+
+/** A playback whose runs are unpacked when they are asked for. */
+export class Playback {
+  constructor(json) {
+    if (json.format !== "carom-playback-1") throw new Error(`not a playback: ${json.format}`);
+    this.scene = json.scene;
+    this.rounding = json.rounding;
+    this.leftOut = json.left_out;
+    this.frames = json.frames;
+    this.balls = { count: json.balls.count, shown: json.balls.shown };
+    this.runs = json.runs;
+    this.packedBalls = json.balls;
+    this.unpacked = new Map();
+    this.times = [];
+    const { intervals, every } = json.frames;
+    for (let k = 0; k < intervals; k += every) this.times.push(k / intervals * json.scene.duration);
+    this.times.push(json.scene.duration);
+  }
+
+  static async read(json) {
+    const playback = new Playback(json);
+    for (const name of ["mass", "radius", "inertia"]) {
+      playback.balls[name] = await unpackDoubles(playback.packedBalls[name]);
+    }
+    return playback;
+  }
+
+  /** Runs that have states, the truth among them. */
+  get played() {
+    return this.runs.filter((run) => run.positions || run.same_as);
+  }
+
+  /** The states of the run with this label. */
+  async run(label) {
+    const about = this.runs.find((run) => run.label === label);
+    if (!about) throw new Error(`no run ${label}`);
+    const packed = about.same_as ? this.runs.find((run) => run.label === about.same_as) : about;
+    if (!this.unpacked.has(packed.label)) this.unpacked.set(packed.label, this.unpack(packed));
+    return { ...await this.unpacked.get(packed.label), about };
+  }
+
+  async unpack(packed) {
+    const shape = { frames: packed.known, balls: this.balls.shown };
+    const plane = this.scene.dimension === 2;
+    const axes = plane ? [0, 1] : [0, 1, 2];
+    const { position_m, speed_mps, spin_radps } = this.rounding;
+    const energy = await unpackDoubles(packed.energy);
+    const counted = await unpackIntegers(packed.counted);
+    for (let k = 1; k < counted.length; k += 1) counted[k] += counted[k - 1];
+    return {
+      frames: packed.known,
+      positions: await unpackStates(packed.positions, { ...shape, axes, grid: position_m, order: 2 }),
+      velocities: await unpackStates(packed.velocities, { ...shape, axes, grid: speed_mps, order: 1 }),
+      spins: packed.spins
+        ? await unpackStates(packed.spins, { ...shape, axes: plane ? [2] : axes, grid: spin_radps, order: 1 })
+        : null,
+      translation: energy.subarray(0, packed.known),
+      rotation: energy.subarray(packed.known, 2 * packed.known),
+      potential: energy.subarray(2 * packed.known),
+      counted,
+      impacts: packed.impacts ? await unpackImpacts(packed.impacts, this.scene.duration) : [],
+      moreImpacts: packed.more_impacts ?? false,
+    };
+  }
+}

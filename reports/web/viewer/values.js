@@ -1,0 +1,69 @@
+import { make } from "./dom.js";
+import { distance } from "./scenery.js";
+import { totals } from "./motion.js";
+import { language } from "./words/words.js";
+
+const kRows = 40;
+
+/** The numbers of every ball of the first run, how far it is from its twin in the second, and sums of each run. */
+export class Values {
+  constructor() {
+    this.element = make("div", { className: "cv-values" });
+  }
+
+  show(motions, states, bodies) {
+    const { words } = language;
+    const scene = motions[0].scene;
+    const axes = scene.dimension === 2 ? ["x", "y"] : ["x", "y", "z"];
+    const c = words.columns;
+    const heads = [c.ball, c.mass, c.radius, ...axes.map((a) => `${a}, m`), ...axes.map((a) => `v_${a}, m/s`), c.speed];
+    if (scene.spin) heads.push(c.spin);
+    if (states[1]) heads.push(c.away);
+    const rows = [];
+    for (let i = 0; i < Math.min(motions[0].balls, kRows); i += 1) {
+      rows.push(this.row(i, axes.length, scene, motions[0], states, bodies));
+    }
+    const table = make("table", {},
+      make("thead", {}, make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text)))),
+      make("tbody", {}, ...rows));
+    const sums = this.sums(motions, states, bodies, axes.length);
+    const notes = motions[0].balls > kRows ? [make("p", { className: "cv-note" }, words.valuesMany(kRows, motions[0].balls))] : [];
+    const scroll = make("div", { className: "cv-scroll", tabIndex: 0, role: "region", "aria-label": words.values }, table);
+    const kept = this.element.querySelector(".cv-scroll")?.scrollTop ?? 0;
+    const focused = document.activeElement?.closest?.(".cv-scroll") && this.element.contains(document.activeElement);
+    this.element.replaceChildren(make("div", { className: "cv-scroll-x" }, sums), scroll, ...notes);
+    scroll.scrollTop = kept;
+    if (focused) scroll.focus({ preventScroll: true });
+  }
+
+  row(i, axes, scene, motion, states, { masses, radii }) {
+    const at = (list, axis) => list[3 * i + axis];
+    const numbers = [masses[i], radii[i]];
+    for (let axis = 0; axis < axes; axis += 1) numbers.push(at(states[0].x, axis));
+    for (let axis = 0; axis < axes; axis += 1) numbers.push(at(states[0].v, axis));
+    numbers.push(Math.hypot(at(states[0].v, 0), at(states[0].v, 1), at(states[0].v, 2)));
+    if (scene.spin) {
+      const spin = motion.spinOf("physical", states[0].frame, i, radii[i]);
+      numbers.push(scene.dimension === 2 ? spin[2] : Math.hypot(...spin));
+    }
+    if (states[1]) numbers.push(distance(states[0], states[1], i));
+    return make("tr", {}, make("th", { scope: "row" }, String(i)), ...numbers.map(cell));
+  }
+
+  sums(motions, states, { masses }, axes) {
+    const { words } = language;
+    const all = states.slice(0, motions.length).map((state) => totals(state, masses));
+    const told = (momentum) => make("td", { className: "cv-momentum", "data-value": JSON.stringify(momentum) },
+      `(${momentum.map((x) => language.number(x, 5)).join("; ")})`);
+    const line = (name, cells) => make("tr", {}, make("th", { scope: "row" }, name), ...cells);
+    return make("table", { className: "cv-sums" }, make("tbody", {},
+      line("", motions.map((motion) => make("th", { scope: "col" }, motion.about.label))),
+      line(words.sums.impacts, motions.map((motion, k) => make("td", { className: "cv-impacts", "data-value": String(motion.counted[states[k].frame]) }, String(motion.counted[states[k].frame])))),
+      line(words.sums.momentum, all.map((sum) => told(sum.momentum.slice(0, axes)))),
+      line(words.sums.kinetic, all.map((sum) => cell(sum.kinetic)))));
+  }
+}
+
+function cell(value) {
+  return make("td", { "data-value": String(value) }, language.number(value, 5));
+}
