@@ -25,6 +25,7 @@ if(NOT there STREQUAL wanted)
   file(WRITE ${MODULES}/fetched "${wanted}")
 endif()
 
+string(REPLACE "," ";" ENTRIES ${ENTRIES})
 list(TRANSFORM ENTRIES PREPEND ${WEB}/)
 execute_process(
   COMMAND ${CMAKE_COMMAND} -E env NODE_PATH=${MODULES}/node_modules ${MODULES}/node_modules/.bin/esbuild ${ENTRIES}

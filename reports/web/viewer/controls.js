@@ -97,7 +97,8 @@ export class Controls {
     const { viewer } = this;
     viewer.host.lang = language.id;
     for (const [name, text] of Object.entries(this.labels)) text.textContent = words[name];
-    const played = viewer.playback.played.map((run) => run.label);
+    const there = viewer.playback.played.map((run) => run.label);
+    const played = viewer.options.choices ? [...new Set([...viewer.options.choices, ...there])] : there;
     this.fill(this.engines[0], played.map((label) => [label, label]), viewer.labels[0]);
     this.fill(this.engines[1], [["", words.none], ...played.filter((l) => l !== viewer.labels[0]).map((label) => [label, label])], viewer.labels[1]);
     this.fill(this.layout, Object.entries(words.layouts), viewer.layout);

@@ -29,6 +29,7 @@ export class Viewer {
    * @param host     an empty element
    * @param json     a playback
    * @param options  engines: labels of the first and the second run; onBall({ball, button, shift, time}): a ball was clicked;
+   *                 choices, onEngines([a, b]): labels that may be chosen although the playback lacks them, and who runs them;
    *                 time, toggles, layout, speed: as an earlier viewer's state(); autoplay; global: keys of the whole page
    */
   static async mount(host, json, options = {}) {
@@ -76,8 +77,13 @@ export class Viewer {
   /** Shows these two runs; the second may be empty. */
   async choose(a, b) {
     if (b === a) b = "";
-    this.labels = [a, b];
     const asked = [a, b].filter(Boolean);
+    const there = this.playback.played.map((run) => run.label);
+    if (this.options.onEngines && !asked.every((label) => there.includes(label)) && this.stage) {
+      this.options.onEngines([a, b]);
+      return;
+    }
+    this.labels = [a, b];
     const runs = await Promise.all(asked.map((label) => this.playback.run(label)));
     if (this.closed || asked.join() !== this.labels.filter(Boolean).join()) return;
     if (runs.length === 0) {

@@ -84,6 +84,20 @@ export const de = {
     ["E", "Drehung: aus, physikalisch, ω = v/r"], ["Q", "Quadtree, Octree"], ["M", "Impulse"], ["T", "Spuren"],
     ["C", "Schwerpunkt, sein System"], ["B", "eine Engine, nebeneinander, Geist"], ["W A S D", "Ansicht drehen oder verschieben"],
     ["+ − 0", "näher, weiter weg, wie am Anfang"], ["H", "diese Hilfe"]],
+  lab: {
+    title: "Carom-Labor", lead: "Kugeln stoßen sich in den Engines deiner Wahl, nebeneinander. Nichts verlässt diesen Rechner.",
+    modes: "Modi", otherScenes: "Alle anderen Szenen", running: "Die Engines rechnen …", shared: "Der Link steht in der Adresszeile und in der Zwischenablage.",
+    click: "Ein Klick auf eine Kugel", tools: { choose: "wählt sie", heavier: "macht sie schwerer (+10 % Masse, +5 % Radius)", lighter: "macht sie leichter (−10 %, −5 %)" },
+    ball: "Kugel", heavier: "Schwerer", lighter: "Leichter",
+    lawTitle: "Deine eigene Formel", example: "Beginnen mit", normal: "Kraftstoß auf Kugel 2 längs n, in N s:", definitions: "Eigene Namen, einer je Zeile (k = m1 / m2):",
+    names: "n zeigt von Kugel 1 zu Kugel 2. Namen: m1, m2, m = 1/(1/m1 + 1/m2), r1, r2, vn1, vn2, vn = (v2 − v1)·n (unter 0, wenn sie sich nähern), e, mu. Auf Kugel 1 wirkt der entgegengesetzte Kraftstoß.",
+    tryLaw: "Ausprobieren", untryLaw: "Zurück zu den Engines",
+    examples: { right: "das richtige Gesetz", course: "das Kursprogramm: −2 m vₙ", "times-e": "e mal der elastische Kraftstoß", "own-mass": "m₁ statt m", sum: "m₁ + m₂ statt m", speeds: "Beträge statt Geschwindigkeiten" },
+    rule: "Was gelten muss", kept: "gilt", broken: "verletzt", brokenShare: "verletzt in", worst: "schlimmster Fall", rightWorst: "richtiges Gesetz",
+    pairs: (n) => `Über ${n} zufällige Paare.`, notFinite: (n) => `Für ${n} davon gab die Formel keine Zahl.`,
+    rules: { momentum: "der Impuls bleibt erhalten", energy_elastic: "die Energie bleibt erhalten, wenn e = 1", energy_never_won: "die Energie wächst nie", rebound: "die Kugeln trennen sich mit dem e-fachen ihrer Annäherung", parting: "sie nähern sich nicht weiter", pushing: "jede wird weggestoßen, nie angezogen", angular_momentum: "der Drehimpuls bleibt erhalten", exchange: "welche Kugel 1 heißt, ist gleichgültig", boost: "aus einem fahrenden Zug gilt dasselbe", mirror: "im Spiegel gilt dasselbe", units: "in anderen Einheiten gilt dasselbe" },
+    sceneTitle: "Die Szene als Text", toml: "TOML, wie die Kommandozeile es liest", runText: "Diesen Text rechnen", undo: "Letzte Änderung zurücknehmen", saveToml: "Als TOML speichern", share: "Link teilen", open: "TOML-Datei öffnen", link: "Link zu dieser Szene",
+  },
   modes: {
     "course/normal-mode": {
       see: "Kugeln, die einander durchdringen, fliegen geradeaus und prallen an den Wänden ab.",

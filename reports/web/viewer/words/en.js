@@ -84,6 +84,20 @@ export const en = {
     ["E", "spin: off, physical, ω = v/r"], ["Q", "quadtree, octree"], ["M", "momenta"], ["T", "trails"],
     ["C", "centre of mass, its frame"], ["B", "one engine, side by side, ghost"], ["W A S D", "turn or move the view"],
     ["+ − 0", "nearer, farther, as at first"], ["H", "this help"]],
+  lab: {
+    title: "Carom lab", lead: "Balls collide in the engines of your choice, side by side. Nothing leaves this machine.",
+    modes: "Modes", otherScenes: "All other scenes", running: "The engines run …", shared: "The link is in the address bar and in the clipboard.",
+    click: "A click on a ball", tools: { choose: "chooses it", heavier: "makes it heavier (+10 % mass, +5 % radius)", lighter: "makes it lighter (−10 %, −5 %)" },
+    ball: "Ball", heavier: "Heavier", lighter: "Lighter",
+    lawTitle: "Your own formula", example: "Start from", normal: "Impulse on ball 2 along n, in N s:", definitions: "Names of your own, one a line (k = m1 / m2):",
+    names: "n points from ball 1 to ball 2. Names: m1, m2, m = 1/(1/m1 + 1/m2), r1, r2, vn1, vn2, vn = (v2 − v1)·n (below 0 as they approach), e, mu. The opposite impulse acts on ball 1.",
+    tryLaw: "Try it", untryLaw: "Back to the engines",
+    examples: { right: "the right law", course: "the course program: −2 m vₙ", "times-e": "e times the elastic impulse", "own-mass": "m₁ in place of m", sum: "m₁ + m₂ in place of m", speeds: "speeds instead of velocities" },
+    rule: "What must hold", kept: "kept", broken: "broken", brokenShare: "broken in", worst: "worst", rightWorst: "the right law",
+    pairs: (n) => `Over ${n} random pairs.`, notFinite: (n) => `For ${n} of them the formula gave no number.`,
+    rules: { momentum: "momentum is kept", energy_elastic: "energy is kept where e = 1", energy_never_won: "energy never grows", rebound: "the balls part with e times the speed at which they met", parting: "they do not go on approaching", pushing: "each is pushed away, never pulled", angular_momentum: "angular momentum is kept", exchange: "which ball is called 1 does not matter", boost: "it is the same from a moving train", mirror: "it is the same in a mirror", units: "it is the same in other units" },
+    sceneTitle: "The scene as text", toml: "TOML, as the command line reads it", runText: "Run this text", undo: "Undo the last change", saveToml: "Save as TOML", share: "Share a link", open: "Open a TOML file", link: "Link to this scene",
+  },
   modes: {
     "course/normal-mode": {
       see: "Balls that pass through each other fly straight on and bounce off the walls.",
