@@ -1,9 +1,14 @@
 #include "reference/measured/measure.h"
 
 #include <cmath>
+#include <map>
+#include <optional>
 #include <stdexcept>
+#include <tuple>
+#include <vector>
 
 #include "reference/measured/fluid.h"
+#include "reference/measured/relaxation.h"
 
 namespace carom::measured {
 
@@ -18,7 +23,7 @@ struct Touch {
 };
 
 /// v + ω × a at the ball's lowest point, a = -r y, is v_x + ω r; at the partner's highest, v_x - ω R.
-Touch touch_of(const std::vector<BallState>& states, const Scenario& scene) {
+Touch touch_of(std::span<const BallState> states, const Scenario& scene) {
   const BallState& ball = states[0];
   Touch touch{ball.velocity.y(), ball.velocity.x() + ball.spin.z() * scene.balls[0].radius, ball.velocity.x(),
               ball.spin.z()};
@@ -52,15 +57,21 @@ double quantity_of(Quantity quantity, const Impact& impact, const Touch& before,
              std::abs(after.normal_mps - before.normal_mps);
     case Quantity::compressibility:
     case Quantity::mean_free_time:
+    case Quantity::fourth_cumulant:
       break;
   }
   throw std::logic_error("measured: a fluid's quantity of an impact");
 }
 
-std::vector<BallState> start_of(const Scenario& scene) {
-  std::vector<BallState> states;
-  for (const Ball& ball : scene.balls) states.push_back({ball.position, ball.velocity, ball.spin});
-  return states;
+Measurement measure_impact(Quantity quantity, const Impact& impact, const Runner& run) {
+  const Scenario scene = impact_scene(impact);
+  std::optional<Touch> before;
+  Touch after;
+  run(scene, [&](std::span<const BallState> states, const Tally&) {
+    after = touch_of(states, scene);
+    if (!before) before = after;
+  });
+  return {quantity_of(quantity, impact, before.value(), after), 0.0};
 }
 
 }  // namespace
@@ -102,17 +113,36 @@ Scenario impact_scene(const Impact& impact) {
   return scene;
 }
 
-Measurement measure(const Value& value, const Runner& run) {
-  if (const auto* fluid = std::get_if<Fluid>(&value.experiment)) {
-    const Measurement z = compressibility(*fluid, run);
-    return value.quantity == Quantity::compressibility ? z : mean_free_time(z);
+struct Laboratory::Fluids {
+  using Key = std::tuple<double, std::size_t, std::int64_t>;
+  std::map<Key, Measurement> compressibilities;
+  std::map<Key, std::vector<RelaxationPoint>> relaxations;
+};
+
+Laboratory::Laboratory(Runner run) : run_(std::move(run)), fluids_(std::make_unique<Fluids>()) {}
+
+Laboratory::~Laboratory() = default;
+
+Measurement Laboratory::measure(const Value& value) {
+  if (const auto* impact = std::get_if<Impact>(&value.experiment)) {
+    return measure_impact(value.quantity, *impact, run_);
   }
-  const Impact& impact = std::get<Impact>(value.experiment);
-  const Scenario scene = impact_scene(impact);
-  const Record record = run(scene);
-  return {
-      quantity_of(value.quantity, impact, touch_of(start_of(scene), scene), touch_of(record.states, scene)),
-      0.0};
+  const Fluid& fluid = std::get<Fluid>(value.experiment);
+  const Fluids::Key key{fluid.density, fluid.count, fluid.blocks};
+  if (value.quantity == Quantity::fourth_cumulant) {
+    auto& points = fluids_->relaxations[key];
+    if (points.empty()) points = relaxation(fluid, run_);
+    return cumulant_after(points, fluid.collisions);
+  }
+  auto known = fluids_->compressibilities.find(key);
+  if (known == fluids_->compressibilities.end()) {
+    known = fluids_->compressibilities.emplace(key, measure_fluid(fluid, run_).compressibility).first;
+  }
+  return value.quantity == Quantity::compressibility ? known->second : mean_free_time(known->second);
+}
+
+Measurement measure(const Value& value, const Runner& run) {
+  return Laboratory(run).measure(value);
 }
 
 bool meets(const Value& value, const Measurement& measurement) {
@@ -121,42 +151,38 @@ bool meets(const Value& value, const Measurement& measurement) {
 }
 
 Runner runner_of(const Engine& engine, std::string profile) {
-  return [&engine, profile = std::move(profile)](const Scenario& scene) {
+  return [&engine, profile = std::move(profile)](const Scenario& scene, const Watch& watch) {
     const std::string reason = unsupported_reason(engine, scene, profile);
     if (!reason.empty()) throw std::runtime_error(engine.info().name + ": " + reason);
     const auto simulation = engine.create(scene, profile);
     const double interval_s = scene.duration_s / static_cast<double>(scene.frames);
     const auto steps = static_cast<std::int64_t>(std::ceil(interval_s / scene.step_s * (1.0 - 1e-12)));
-    Record record;
-    record.impacts.push_back(simulation->tally().impacts);
-    for (std::int64_t frame = 0; frame < scene.frames; ++frame) {
-      simulation->advance(interval_s / static_cast<double>(steps), steps);
-      record.impacts.push_back(simulation->tally().impacts);
+    std::vector<BallState> states(scene.balls.size());
+    for (std::int64_t frame = 0; frame <= scene.frames; ++frame) {
+      if (frame > 0) simulation->advance(interval_s / static_cast<double>(steps), steps);
+      simulation->snapshot(states);
+      watch(states, simulation->tally());
     }
-    record.states.resize(scene.balls.size());
-    simulation->snapshot(record.states);
-    return record;
   };
 }
 
 Runner runner_of(const TruthSource& source) {
-  return [&source](const Scenario& scene) {
+  return [&source](const Scenario& scene, const Watch& watch) {
     const std::string reason = source.refuses(scene);
     if (!reason.empty()) throw std::runtime_error(std::string(source.kind()) + ": " + reason);
     std::vector<Moment> moments;
     for (std::int64_t frame = 0; frame <= scene.frames; ++frame) {
       moments.push_back({scene.duration_s / static_cast<double>(scene.frames), frame});
     }
-    Record record;
+    std::size_t seen = 0;
     const Solution solution =
         source.solve(scene, moments, [&](std::size_t, std::span<const BallState> states, const Tally& tally) {
-          record.impacts.push_back(tally.impacts);
-          record.states.assign(states.begin(), states.end());
+          watch(states, tally);
+          ++seen;
         });
-    if (record.impacts.size() != moments.size()) {
+    if (seen != moments.size()) {
       throw std::runtime_error(std::string(source.kind()) + ": not known to the end: " + solution.limit);
     }
-    return record;
   };
 }
 

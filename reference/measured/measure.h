@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "engine/engine.h"
 #include "engine/truth_source.h"
@@ -11,15 +11,11 @@
 
 namespace carom::measured {
 
-/// What an experiment takes from a run: the states at the end, and how many impacts there were at each frame,
-/// the first one at t = 0.
-struct Record {
-  std::vector<BallState> states;
-  std::vector<std::int64_t> impacts;
-};
+/// Sees the balls and the engine's account at t = 0 and at the end of each frame.
+using Watch = std::function<void(std::span<const BallState> states, const Tally& tally)>;
 
 /// Whatever can run a scene: an engine, a truth source.
-using Runner = std::function<Record(const Scenario& scene)>;
+using Runner = std::function<void(const Scenario& scene, const Watch& watch)>;
 
 /// @pre engine outlives the runner
 Runner runner_of(const Engine& engine, std::string profile = "faithful");
@@ -31,7 +27,23 @@ struct Measurement {
   double uncertainty = 0.0;  ///< 0: nothing but rounding
 };
 
-/// Runs what the value was measured in, and measures it anew.
+/// Measures values anew, each in what it was measured in; a fluid that several of them ask for runs once.
+class Laboratory {
+ public:
+  explicit Laboratory(Runner run);
+  ~Laboratory();
+  Laboratory(const Laboratory&) = delete;
+  Laboratory& operator=(const Laboratory&) = delete;
+
+  Measurement measure(const Value& value);
+
+ private:
+  struct Fluids;
+  Runner run_;
+  std::unique_ptr<Fluids> fluids_;
+};
+
+/// One value alone.
 Measurement measure(const Value& value, const Runner& run);
 
 /// The scene of an impact: it touches halfway through the duration, with the partner's centre or the wall

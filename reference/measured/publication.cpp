@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "reference/measured/relaxation.h"
 #include "scenario/read.h"
 
 namespace carom::measured {
@@ -19,9 +20,9 @@ namespace {
 constexpr Range kAcute{0.0, 90.0, false, true, "degrees in [0, 90)"};
 constexpr std::array<std::string_view, 4> kPartners = {"wall", "equal", "mirrored", "heavy"};
 /// In the order of the enumeration.
-constexpr std::array<std::string_view, 10> kQuantities = {
-    "restitution", "tangential-ratio", "tangential",      "spin",          "beta", "scaled-slip",
-    "scaled-spin", "friction",         "compressibility", "mean-free-time"};
+constexpr std::array<std::string_view, 11> kQuantities = {
+    "restitution", "tangential-ratio", "tangential",      "spin",           "beta",           "scaled-slip",
+    "scaled-spin", "friction",         "compressibility", "mean-free-time", "fourth-cumulant"};
 
 template <std::size_t count>
 std::vector<std::string_view> listed(const std::array<std::string_view, count>& words) {
@@ -49,10 +50,15 @@ Impact read_impact(Reader reader) {
   return impact;
 }
 
-Fluid read_fluid(Reader reader) {
+constexpr Range kCollisions{0.0, kMostCollisions, true, false, "a number in (0, 6]"};
+
+Fluid read_fluid(Reader reader, Quantity quantity) {
   Fluid fluid;
   fluid.density = reader.required("density", reader.number("density", kPositive));
   fluid.count = static_cast<std::size_t>(reader.required("count", reader.integer("count", 100, 1'000'000)));
+  if (quantity == Quantity::fourth_cumulant) {
+    fluid.collisions = reader.required("collisions", reader.number("collisions", kCollisions));
+  }
   reader.finish();
   return fluid;
 }
@@ -76,7 +82,7 @@ Value read_value(Reader& reader) {
   const char* key = of_fluid ? "fluid" : "impact";
   auto experiment = reader.required(key, reader.table(key));
   if (of_fluid) {
-    value.experiment = read_fluid(std::move(experiment));
+    value.experiment = read_fluid(std::move(experiment), value.quantity);
   } else {
     value.experiment = read_impact(std::move(experiment));
   }

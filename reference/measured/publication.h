@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct Impact {
 struct Fluid {
   double density = 0.5;      ///< n σ³, far from walls
   std::size_t count = 2000;  ///< spheres
+  double collisions = 0.0;   ///< of each since the start, for what is measured at one moment
+  std::int64_t blocks = 20;  ///< of time, for what is measured on the average; not in the file
 };
 
 enum class Quantity {
@@ -46,6 +49,7 @@ enum class Quantity {
   friction,          ///< |J_t|/|J_n|, for solid spheres: (2/7) |Δg_t|/|Δv_n|
   compressibility,   ///< Z = P/(n T)
   mean_free_time,    ///< between two collisions of a sphere, in σ √(m/T)
+  fourth_cumulant,   ///< a₂ = ⟨v⁴⟩/((5/3)⟨v²⟩²) - 1, spheres that started with equal speeds
 };
 
 /// A published number, and what to run to get it.

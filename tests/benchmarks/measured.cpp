@@ -14,8 +14,8 @@ using namespace carom;
 using namespace carom::measured;
 using Json = nlohmann::ordered_json;
 
-Json row_of(const Value& value, const Runner& run) {
-  const Measurement measurement = measure(value, run);
+Json row_of(const Value& value, Laboratory& laboratory) {
+  const Measurement measurement = laboratory.measure(value);
   Json row = {{"name", value.name},
               {"unit", value.unit},
               {"published", value.published ? Json(*value.published) : Json(nullptr)},
@@ -37,14 +37,14 @@ int main(int argc, char** argv) {
   }
   try {
     const auto carom = make_carom_engine("carom");
-    const Runner run = runner_of(*carom);
+    Laboratory laboratory(runner_of(*carom));
     Json all = Json::array();
     for (const Publication& publication : read_publications(argv[1])) {
       Json json = {{"key", publication.key},         {"title", publication.title},
                    {"authors", publication.authors}, {"journal", publication.journal},
                    {"year", publication.year},       {"doi", publication.doi},
                    {"note", publication.note},       {"values", Json::array()}};
-      for (const Value& value : publication.values) json["values"].push_back(row_of(value, run));
+      for (const Value& value : publication.values) json["values"].push_back(row_of(value, laboratory));
       all.push_back(std::move(json));
     }
     fmt::print("{}\n", all.dump(2));
