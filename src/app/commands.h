@@ -14,6 +14,10 @@ ExitCode list_command(const Options& options);
 /// @throws InputError before anything is run or written; MachineError.
 ExitCode compare_command(const Options& options);
 
+/// carom law: what laws from files keep and break, beside the right one; without a law, those that there are.
+/// @throws InputError, MachineError
+ExitCode law_command(const Options& options);
+
 /// carom explain: switch the engine's settings one by one, print which explains its divergence. Exit code
 /// `violated` where the run that is to be explained does not end well.
 /// @throws InputError before anything is run; MachineError.

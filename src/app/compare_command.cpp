@@ -4,6 +4,7 @@
 
 #include "app/coefficients.h"
 #include "app/commands.h"
+#include "app/laws.h"
 #include "app/layout.h"
 #include "app/machine.h"
 #include "app/prepare.h"
@@ -125,6 +126,8 @@ ExitCode compare_command(const Options& options) {
   if (full_report(options)) {
     results.coefficients = measure_coefficients(engines, limits, options.parallel);
     results.textbook = examine_textbook();
+    results.laws.push_back(examine_right_law(true));
+    for (const LawFile& law : all_laws()) results.laws.push_back(examine_law(law));
   }
   if (baseline) hold_against(*baseline, options.baseline_factor.value_or(kBaselineFactor), results);
   if (!options.quiet || !results.holds()) {

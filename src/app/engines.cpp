@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "carom/carom_engine.h"
+#include "carom/law_engine.h"
 #include "core/error.h"
 #include "engine/modules.h"
 #include "reference/closed_form/closed_form.h"
@@ -72,12 +73,16 @@ std::vector<std::string> EngineCatalog::names() const {
   for (const EngineSource& source : sources_) names.push_back(source.name);
   for (const MissingEngine& engine : missing_) names.push_back(engine.name);
   for (std::string& variant : carom_variant_names()) names.push_back(std::move(variant));
+  names.emplace_back(kLawEngineName);
   return names;
 }
 
 EngineSource EngineCatalog::find(const std::string& name) const {
   for (const EngineSource& source : sources_) {
     if (source.name == name) return source;
+  }
+  if (name == kLawEngineName) {
+    throw InputError(fmt::format("engine {} takes part with --law FILE, and is not named", name));
   }
   const std::vector<std::string> variants = carom_variant_names();
   if (std::find(variants.begin(), variants.end(), name) != variants.end()) return carom_source(name);

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core/files.h"
+#include "scenario/catalog.h"
 
 namespace carom {
 
@@ -13,6 +14,9 @@ inline std::filesystem::path engine_folder() {
 }
 inline std::filesystem::path scenario_folder() {
   return program_prefix() / "share/carom/scenarios";
+}
+inline std::filesystem::path law_folder() {
+  return scenario_folder() / kLawGroup;
 }
 inline std::filesystem::path web_folder() {
   return program_prefix() / "share/carom/reports/web";

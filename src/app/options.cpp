@@ -67,6 +67,12 @@ void add_scene_options(CLI::App& command, Options& options) {
   command.add_option("--engine", options.engines, "an engine, or engine@profile; may be given several times")
       ->expected(1)
       ->take_all();
+  command
+      .add_option(
+          "--law", options.laws,
+          "also run carom with a law of impact from this file (carom law); may be given several times")
+      ->expected(1)
+      ->take_all();
   add_run_options(command, options);
   command.add_flag("--all-balls", options.all_balls, "list the final state of every ball in the JSON");
 }
@@ -192,9 +198,15 @@ Parsed parse_options(int argc, char** argv) {
   add_run_options(*explain, options);
   add_common_options(*explain, options);
 
+  CLI::App* law = app.add_subcommand("law", "what a law of impact from a file keeps and breaks");
+  law->add_option("LAW", options.laws,
+                  "a .toml file, or a name; nothing: those that there are, and what a law may say");
+  law->add_option("--seed", options.seed, "of the random pairs")->check(seed());
+  law->add_option("--json", options.json_file, "write the findings as JSON to this file")->check(not_empty());
+
   CLI::App* help = app.add_subcommand("help", "help on a command");
-  help->add_option("COMMAND", options.topic, "list, run, check, study, explain or help")
-      ->check(CLI::IsMember({"list", "run", "check", "study", "explain", "help"}));
+  help->add_option("COMMAND", options.topic, "list, run, check, study, explain, law or help")
+      ->check(CLI::IsMember({"list", "run", "check", "study", "explain", "law", "help"}));
 
   // Once a command line is parsed, help() is that of the command it names.
   const std::string overview = app.help();

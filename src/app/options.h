@@ -9,11 +9,12 @@ namespace carom {
 
 /// What the command line says.
 struct Options {
-  std::string command;  ///< "list", "run", "check", "study", "explain" or "help"
+  std::string command;  ///< "list", "run", "check", "study", "explain", "law" or "help"
   std::string topic;    ///< of list and help
 
   std::vector<std::string> scenes;
   std::vector<std::string> engines;       ///< as written: "name" or "name@profile"
+  std::vector<std::string> laws;          ///< files, or names of laws that come with Carom
   std::string metric;                     ///< of explain; empty: the one that tells the most
   std::vector<std::string> engines_from;  ///< folders with further engine modules
   std::optional<double> step_s;

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <set>
 
+#include "app/laws.h"
 #include "app/layout.h"
+#include "carom/law_engine.h"
 #include "core/error.h"
 #include "scenario/catalog.h"
 #include "scenario/parse.h"
@@ -46,6 +48,7 @@ std::vector<Participant> participants(const Options& options, const EngineCatalo
     const std::string profile = at == std::string::npos ? "faithful" : word.substr(at + 1);
     all.push_back({catalog.find(word.substr(0, at)), profile, {}});
   }
+  if (!options.laws.empty()) all.push_back({law_source(load_laws(options.laws)), std::nullopt, {}});
   std::vector<EngineSource> sources;
   sources.reserve(all.size());
   for (const Participant& each : all) sources.push_back(each.source);

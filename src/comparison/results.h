@@ -8,6 +8,7 @@
 #include "comparison/coefficients.h"
 #include "comparison/comparison.h"
 #include "comparison/examine_textbook.h"
+#include "comparison/law_report.h"
 #include "engine/engine.h"
 
 namespace carom {
@@ -59,6 +60,7 @@ struct Results {
   std::vector<SceneComparison> scenes;
   std::vector<CoefficientPanel> coefficients;  ///< empty where they were not measured
   std::optional<TextbookFindings> textbook;    ///< where the course program was examined
+  std::vector<LawReport> laws;                 ///< the right one first; empty where none were examined
   std::optional<std::uint64_t> seed;           ///< given instead of the scenes' own
   std::optional<BaselineFindings> baseline;    ///< where there was one to hold against
 

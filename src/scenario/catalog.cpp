@@ -38,7 +38,7 @@ std::vector<fs::path> Catalog::all() const {
     throw InputError(fmt::format("{}: no such folder of scenes", folder_.string()));
   std::vector<fs::path> files;
   for (const fs::directory_entry& group : fs::directory_iterator(folder_)) {
-    if (!group.is_directory()) continue;
+    if (!group.is_directory() || group.path().filename() == kLawGroup) continue;
     const std::vector<fs::path> in_group = toml_files_in(group);
     files.insert(files.end(), in_group.begin(), in_group.end());
   }

@@ -2,9 +2,13 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace carom {
+
+/// The folder among the groups that holds laws of impact (carom/laws/law_file.h), and no scenes.
+inline constexpr std::string_view kLawGroup = "laws";
 
 /// The scene files below a folder laid out as <group>/<name>.toml, in the order of their ids.
 class Catalog {

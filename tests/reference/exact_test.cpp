@@ -15,6 +15,7 @@
 #include "core/random.h"
 #include "reference/closed_form/closed_form.h"
 #include "reference/exact/certify.h"
+#include "scenario/catalog.h"
 #include "scenario/parse.h"
 
 namespace carom {
@@ -115,11 +116,10 @@ void expect_agreement(const Scenario& scene, const std::string& name) {
 
 TEST(ExactTruth, AgreesWithClosedForm_InEveryScene) {
   int compared = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(CAROM_SOURCE_DIR "/scenarios")) {
-    if (entry.path().extension() != ".toml") continue;
-    const ScenarioPtr scene = load_scene(entry.path().string());
+  for (const auto& file : Catalog(CAROM_SOURCE_DIR "/scenarios").all()) {
+    const ScenarioPtr scene = load_scene(file);
     if (!make_closed_form_truth()->refuses(*scene).empty() || !refusal(*scene).empty()) continue;
-    expect_agreement(*scene, entry.path().string());
+    expect_agreement(*scene, file.string());
     ++compared;
   }
   EXPECT_GE(compared, 25);

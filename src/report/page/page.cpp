@@ -7,6 +7,7 @@
 #include "report/page/coefficients.h"
 #include "report/page/costs.h"
 #include "report/page/html.h"
+#include "report/page/laws.h"
 #include "report/page/measured.h"
 #include "report/page/orders.h"
 #include "report/page/overview.h"
@@ -66,6 +67,7 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
   if (!results.coefficients.empty()) add(bar, "a", {{"href", "#coefficients"}}, "Impacts");
   if (has_symmetries(results)) add(bar, "a", {{"href", "#symmetry"}}, "Symmetries");
   if (results.textbook) add(bar, "a", {{"href", "#textbook"}}, "The course program");
+  if (!results.laws.empty()) add(bar, "a", {{"href", "#laws"}}, "Laws of impact");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
   if (std::filesystem::exists(published_file(web)))
@@ -94,6 +96,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_symmetries(main, results, legend);
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend, plays);
   add_textbook(main, results.textbook);
+  add_laws(main, results.laws);
   add_guide(main, read_file(web / "guide.md"));
   add_engines(main, results);
   add_measured(main, published_file(web));
