@@ -19,9 +19,8 @@ namespace carom {
 namespace {
 
 /// One run against the truth and against what physics conserves.
-void measure(const Yardstick& yardstick, double tolerance_m, RunComparison& result) {
-  if (result.run.status != RunStatus::ok) return;
-  const std::vector<Conserved> conserved = yardstick.conserved_of(result.run.trajectory);
+void measure(const Yardstick& yardstick, double tolerance_m, const std::vector<Conserved>& conserved,
+             RunComparison& result) {
   measure_energy(yardstick, conserved, result);
   measure_momentum(yardstick, conserved, result);
   measure_angular_momentum(yardstick, conserved, result);
@@ -47,12 +46,14 @@ std::optional<double> earlier(std::optional<double> a, std::optional<double> b) 
 }
 
 /// Two runs against each other.
+/// @param conserved  of each run
 PairComparison pair_of(const Yardstick& yardstick, double tolerance_m, std::size_t a, std::size_t b,
-                       const std::vector<RunComparison>& runs) {
+                       const std::vector<RunComparison>& runs,
+                       const std::vector<std::vector<Conserved>>& conserved) {
   const Trajectory& trajectory_a = runs[a].run.trajectory;
   const Trajectory& trajectory_b = runs[b].run.trajectory;
-  const std::vector<Conserved> conserved_a = yardstick.conserved_of(trajectory_a);
-  const std::vector<Conserved> conserved_b = yardstick.conserved_of(trajectory_b);
+  const std::vector<Conserved>& conserved_a = conserved[a];
+  const std::vector<Conserved>& conserved_b = conserved[b];
   PairComparison result;
   result.a = a;
   result.b = b;
@@ -91,11 +92,16 @@ SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
   const std::optional<Gas> gas = gas_of(*result.scene);
   if (gas) result.statistics = gas->asked;
   const Yardstick yardstick(*result.scene, result.truth);
+  std::vector<std::vector<Conserved>> conserved(runs.size());
   for (Run& run : runs) {
     RunComparison& each = result.runs.emplace_back();
     each.run = std::move(run);
     each.under_test = std::find(under_test.begin(), under_test.end(), each.run.label()) != under_test.end();
-    measure(yardstick, result.position_tolerance_m, each);
+    if (each.run.status == RunStatus::ok) {
+      std::vector<Conserved>& own = conserved[result.runs.size() - 1];
+      own = yardstick.conserved_of(each.run.trajectory);
+      measure(yardstick, result.position_tolerance_m, own, each);
+    }
     each.symmetries = std::move(symmetries[result.runs.size() - 1]);
     each.metrics[Metric::symmetry] = each.symmetries.worst_radii();
     measure_statistics(gas, each);
@@ -104,7 +110,7 @@ SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
   for (std::size_t a = 0; a < result.runs.size(); ++a) {
     for (std::size_t b = a + 1; b < result.runs.size(); ++b) {
       if (result.runs[a].run.status != RunStatus::ok || result.runs[b].run.status != RunStatus::ok) continue;
-      result.pairs.push_back(pair_of(yardstick, result.position_tolerance_m, a, b, result.runs));
+      result.pairs.push_back(pair_of(yardstick, result.position_tolerance_m, a, b, result.runs, conserved));
     }
   }
   return result;

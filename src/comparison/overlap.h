@@ -1,15 +1,62 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "engine/engine.h"
 #include "scenario/scenario.h"
 
 namespace carom {
 
-/// The deepest overlap among the balls, and of a ball with a wall, divided by the smaller radius; 0 where
-/// nothing overlaps. Balls that may pass through each other are not held against each other. Sorts along x
-/// and looks only at balls whose extents overlap there: independent of every engine's own search.
+/// Finds the deepest overlap in one moment of a scene after the other. Independent of every engine's own
+/// search.
+///
+/// Who is near whom changes slowly: the pairs with a gap of less than two margins are listed, and the list
+/// holds for as long as no ball has moved by more than one margin since. The margin is what balls move in a
+/// few frames, as the first ones show; where that is more than a radius, each frame is listed anew, without a
+/// margin.
+class OverlapSearch {
+ public:
+  /// The scene outlives the search.
+  explicit OverlapSearch(const Scenario& scenario);
+
+  /// The deepest overlap among the balls, and of a ball with a wall, divided by the smaller radius; 0 where
+  /// nothing overlaps. Balls that may pass through each other are not held against each other.
+  /// @pre places are finite
+  double deepest(std::span<const BallState> balls);
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+
+  double deepest_in_walls(std::span<const BallState> balls) const;
+  double deepest_in_pairs(std::span<const BallState> balls) const;
+  bool list_holds(std::span<const BallState> balls) const;
+  void list(std::span<const BallState> balls);
+  void list_by_sweep(std::span<const BallState> balls);
+  void list_by_cells(std::span<const BallState> balls);
+  void sort_into_cells(std::span<const BallState> balls);
+  void list_with(std::uint32_t ball, std::int64_t first_cell, std::int64_t last_cell,
+                 std::span<const BallState> balls);
+  void list_if_near(std::uint32_t a, std::uint32_t b, std::span<const BallState> balls);
+  double radius(std::uint32_t ball) const { return scenario_.balls[ball].radius; }
+
+  const Scenario& scenario_;
+  double smallest_radius_m_ = 0.0;
+  double largest_radius_m_ = 0.0;
+  double margin_m_ = 0.0;
+  std::vector<Vec3> listed_at_;  ///< where the balls were when the list was made; empty before the first
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> near_;
+  // What listing works in, kept from one time to the next.
+  std::vector<std::uint32_t> order_;   ///< the balls, along x or by cell
+  std::vector<std::int64_t> cell_of_;  ///< by ball
+  std::vector<std::uint32_t> starts_;  ///< of each cell in order_, and the end
+  Cell counts_{};                      ///< of cells along each axis
+};
+
+/// Of a single moment.
 double deepest_overlap(const Scenario& scenario, std::span<const BallState> balls);
 
 }  // namespace carom

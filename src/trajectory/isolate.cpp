@@ -153,7 +153,7 @@ class Child {
   static constexpr std::size_t kTail = 4096;
 
   static void drain(int& file, std::string& into, std::size_t keep) {
-    std::array<char, 65536> buffer{};
+    static std::array<char, 65536> buffer;  // what is in it is overwritten: not cleared again and again
     pollfd ready{file, POLLIN, 0};
     while (file >= 0 && poll(&ready, 1, 0) > 0) {
       const ssize_t count = read(file, buffer.data(), buffer.size());

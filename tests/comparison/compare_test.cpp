@@ -206,25 +206,40 @@ TEST(Compare, Escaped_CountsBallsWhoseCentreWasBehindAWall) {
   EXPECT_EQ(*compared(scene, straight()).runs[0].metrics[Metric::escaped], 0.0);
 }
 
-TEST(DeepestOverlap, AgreesWithLookingAtAllPairs) {
+double deepest_of_all_pairs(const Scenario& scene, const std::vector<BallState>& states) {
+  double deepest = 0.0;
+  for (std::size_t a = 0; a < states.size(); ++a) {
+    for (std::size_t b = a + 1; b < states.size(); ++b) {
+      const double reach = scene.balls[a].radius + scene.balls[b].radius;
+      const double overlap = reach - (states[a].position - states[b].position).norm();
+      deepest = std::max(deepest, overlap / std::min(scene.balls[a].radius, scene.balls[b].radius));
+    }
+  }
+  return deepest;
+}
+
+// Alike or not in size, still or fast, few cells or many: the pairs are searched for in different ways.
+TEST(OverlapSearch, AgreesWithLookingAtAllPairs_FrameAfterFrame) {
   Random random(3);
-  for (int trial = 0; trial < 50; ++trial) {
+  for (int trial = 0; trial < 60; ++trial) {
+    const int dimension = trial % 2 == 0 ? 2 : 3;
+    const double smallest_m = trial % 3 == 0 ? 0.01 : 0.1;
+    const double way_m = trial % 5 == 0 ? 0.5 : 0.01 * (trial % 4);  // in a frame
+    const double room_m = trial % 7 == 0 ? 20.0 : 1.0;
     Scenario scene;
     for (int i = 0; i < 60; ++i) {
       Ball ball;
-      ball.radius = random.uniform(0.01, 0.3);
-      ball.position = random_vector(random, 3, 1.0);
+      ball.radius = random.uniform(smallest_m, 0.3);
+      ball.position = random_vector(random, dimension, room_m);
+      ball.velocity = random_vector(random, dimension, 1.0);
       scene.balls.push_back(ball);
     }
-    double expected = 0.0;
-    for (const Ball& a : scene.balls) {
-      for (const Ball& b : scene.balls) {
-        if (&a == &b) continue;
-        const double overlap = a.radius + b.radius - (a.position - b.position).norm();
-        expected = std::max(expected, overlap / std::min(a.radius, b.radius));
-      }
+    OverlapSearch search(scene);
+    std::vector<BallState> states = states_of(scene);
+    for (int frame = 0; frame < 12; ++frame) {
+      EXPECT_DOUBLE_EQ(search.deepest(states), deepest_of_all_pairs(scene, states)) << trial << " " << frame;
+      for (BallState& state : states) state.position += way_m * state.velocity;
     }
-    EXPECT_DOUBLE_EQ(deepest_overlap(scene, states_of(scene)), expected) << "trial " << trial;
   }
 }
 

@@ -26,10 +26,11 @@ void measure_contact(const Yardstick& yardstick, RunComparison& result) {
   const Scenario& scene = yardstick.scene();
   const Trajectory& trajectory = result.run.trajectory;
   double deepest = 0.0;
+  OverlapSearch search(scene);
   std::vector<bool> outside(trajectory.balls(), false);
   for (std::size_t k = 0; k < trajectory.frames(); ++k) {
     const auto balls = trajectory.frame(k);
-    deepest = std::max(deepest, deepest_overlap(scene, balls));
+    deepest = std::max(deepest, search.deepest(balls));
     for (std::size_t i = 0; i < balls.size(); ++i) {
       if (behind_something(scene, scene.balls[i].position, balls[i].position)) outside[i] = true;
     }
