@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "report/page/canvas.h"
-#include "report/page/style.h"
+#include "report/page/log_plot.h"
 #include "report/page/wording.h"
 
 namespace carom::page {
@@ -19,11 +17,6 @@ namespace carom::page {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double kGrowthWidth_px = 330.0;
-constexpr double kGrowthHeight_px = 220.0;
-constexpr int kBallTicks = 4;
-constexpr int kWorkTicks = 10;
 
 bool equal_balls(const Json& growth) {
   return growth.at("size_ratio") == 1.0;
@@ -74,68 +67,18 @@ void add_growth_table(Node parent, const Json& growths) {
   }
 }
 
-/// A colour and a shape of its own for each line of a plot.
-LineStyle style_of(std::size_t line) {
-  return {fmt::format("c{}", line), {}, line};
-}
-
-void add_key(Node parent, const std::vector<Json>& growths) {
-  Node key = add(parent, "ul", {{"class", "key"}});
-  for (std::size_t i = 0; i < growths.size(); ++i) {
-    Node item = add(key, "li");
-    Node svg = add(
-        item, "svg",
-        {{"class", "swatch " + style_of(i).colour_class}, {"viewBox", "0 0 34 12"}, {"aria-hidden", "true"}});
-    add(svg, "path", {{"class", "line"}, {"d", "M1 6h32"}});
-    add(svg, "path", {{"class", "marker"}, {"d", style_of(i).marker({17.0, 6.0})}});
-    say(item, fmt::format(" {}, n^{:.2f}", growths[i].at("broad_phase").get<std::string>(),
-                          growths[i].at("exponent_of_total").get<double>()));
-  }
-}
-
-/// The work as (log₁₀ n, log₁₀ work).
-Polyline logarithms(const Json& growth) {
-  Polyline line;
-  for (const Json& work : growth.at("work")) {
-    line.push_back({std::log10(work.at("balls").get<double>()), std::log10(work.at("total").get<double>())});
-  }
-  return line;
-}
-
-/// From the smallest to the largest of a coordinate of all points, widened to whole powers.
-Axis axis_over(const std::vector<Polyline>& lines, double Point::*coordinate) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const Polyline& line : lines) {
-    for (const Point& point : line) {
-      low = std::min(low, std::floor(point.*coordinate));
-      high = std::max(high, std::ceil(point.*coordinate));
-    }
-  }
-  return low < high ? Axis::linear(low, high) : Axis::linear(0.0, 1.0);
-}
-
 void add_growth_plot(Node parent, const std::vector<Json>& growths) {
-  const std::string title = "Work of a step, " + gas_of(growths.front());
-  std::vector<Polyline> lines;
-  lines.reserve(growths.size());
-  for (const Json& growth : growths) lines.push_back(logarithms(growth));
-  Node figure = add(parent, "figure");
-  add(add(figure, "figcaption"), "strong", {}, title + ".");
-  add_key(figure, growths);
-  const Canvas canvas =
-      add_canvas(figure, {title, "The numbers are in the table."}, axis_over(lines, &Point::x),
-                 axis_over(lines, &Point::y), kGrowthWidth_px, kGrowthHeight_px,
-                 {kBallTicks, "balls, as a power of ten"}, {kWorkTicks, "operations, as a power of ten"});
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    Polyline drawn;
-    for (const Point& point : lines[i]) drawn.push_back(canvas.at(point.x, point.y));
-    const LineStyle style = style_of(i);
-    add(canvas.area, "path", {{"class", "line " + style.colour_class}, {"d", path_data(drawn)}});
-    std::string markers;
-    for (const Point& point : drawn) markers += style.marker(point);
-    add(canvas.area, "path", {{"class", "marker " + style.colour_class}, {"d", markers}});
+  std::vector<PowerLine> lines;
+  for (const Json& growth : growths) {
+    PowerLine line{fmt::format("{}, n^{:.2f}", growth.at("broad_phase").get<std::string>(),
+                               growth.at("exponent_of_total").get<double>()),
+                   {}};
+    for (const Json& work : growth.at("work")) {
+      line.points.push_back({work.at("balls").get<double>(), work.at("total").get<double>()});
+    }
+    lines.push_back(std::move(line));
   }
+  add_log_plot(parent, "Work of a step, " + gas_of(growths.front()), "operations", lines);
 }
 
 /// A plot for each gas of equal balls.

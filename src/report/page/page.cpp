@@ -12,6 +12,7 @@
 #include "report/page/orders.h"
 #include "report/page/overview.h"
 #include "report/page/scene_section.h"
+#include "report/page/speed.h"
 #include "report/page/style.h"
 #include "report/page/survival.h"
 #include "report/page/symmetry.h"
@@ -53,6 +54,10 @@ std::filesystem::path orders_file(const std::filesystem::path& web) {
   return web.parent_path() / "measured/orders.json";
 }
 
+std::filesystem::path speed_file(const std::filesystem::path& web) {
+  return web.parent_path() / "measured/speed.json";
+}
+
 /// Found out by the same.
 std::filesystem::path catches_file(const std::filesystem::path& web) {
   return web.parent_path() / "measured/gates.json";
@@ -76,6 +81,7 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
   if (std::filesystem::exists(catches_file(web))) {
     add(bar, "a", {{"href", "#catches"}}, "What the gates catch");
   }
+  if (std::filesystem::exists(speed_file(web))) add(bar, "a", {{"href", "#speed"}}, "How fast");
   if (std::filesystem::exists(costs_file(web))) add(bar, "a", {{"href", "#costs"}}, "What effects cost");
 }
 
@@ -102,6 +108,7 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_measured(main, published_file(web));
   add_orders(main, orders_file(web));
   add_catches(main, catches_file(web));
+  add_speed(main, speed_file(web));
   add_costs(main, costs_file(web));
   add_footer(body, results);
   return head(web, viewer) + markup(body) + "\n</html>\n";

@@ -1,0 +1,86 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/error.h"
+#include "core/files.h"
+#include "report/page/speed.h"
+
+namespace carom::test {
+namespace {
+
+using page::Node;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string chapter_of(const std::filesystem::path& file) {
+  pugi::xml_document document;
+  Node body = document.append_child("body");
+  page::add_speed(body, file);
+  return page::markup(body);
+}
+
+std::string chapter_of_text(const std::string& text) {
+  const std::string file = testing::TempDir() + "speed-for-a-page.json";
+  write_file(file, text);
+  return chapter_of(std::filesystem::path(file));
+}
+
+std::string cell(const std::string& text) {
+  return "<td class=\"number\">" + text + "</td>";
+}
+
+constexpr const char* kSpeed = R"({
+  "machine": {"cpu": "a <chip>", "cores": 3, "compiler": "a compiler", "build": "Fast"}, "rounds": 7,
+  "goals": [
+    {"what": "faster", "unit": "", "at_least": 100, "measured": {"median": 120, "low": 110, "high": 130}, "met": true},
+    {"what": "smaller", "unit": "bytes", "at_most": 200,
+     "measured": {"median": 250, "low": 250, "high": 251}, "met": false}],
+  "costs": [
+    {"layout": "space", "per": "ball and step", "balls": 1000, "engine": "peer",
+     "ns": {"median": 700, "low": 690, "high": 720}},
+    {"layout": "space", "per": "ball and step", "balls": 1000, "engine": "own",
+     "ns": {"median": 9, "low": 8, "high": 10}},
+    {"layout": "space", "per": "ball and step", "balls": 10000, "engine": "own",
+     "ns": {"median": 10, "low": 9, "high": 11}},
+    {"layout": "dense", "per": "collision", "balls": 1000, "engine": "own",
+     "ns": {"median": 1300, "low": 1200, "high": 1400}}]
+})";
+
+TEST(SpeedChapter, ShowsEachGoal_WithItsSpread_AndWhetherItIsReached) {
+  EXPECT_THAT(chapter_of_text(kSpeed),
+              AllOf(HasSubstr("faster</td>" + cell("at least 100") + cell("120 (110 … 130)") +
+                              "<td class=\"holds\">✓ yes</td>"),
+                    HasSubstr("smaller</td>" + cell("at most 200 bytes") + cell("250 (250 … 251)") +
+                              "<td class=\"broken\">✗ no</td>")));
+}
+
+TEST(SpeedChapter, ShowsEachEngineOverTheBalls_LeavingOpenWhatWasNotMeasured) {
+  EXPECT_THAT(chapter_of_text(kSpeed), AllOf(HasSubstr("peer</th>" + cell("700 (690 … 720)") + cell("–")),
+                                             HasSubstr("own</th>" + cell("9 (8 … 10)") + cell("10 (9 … 11)")),
+                                             HasSubstr("CPU time of one ball and step, ns: space"),
+                                             HasSubstr("CPU time of one collision, ns: dense")));
+}
+
+TEST(SpeedChapter, NamesTheMachine) {
+  EXPECT_THAT(chapter_of_text(kSpeed), HasSubstr("on a &lt;chip&gt; with 3 cores (a compiler, build Fast)"));
+}
+
+TEST(SpeedChapter, IsAbsentWithoutTheFile) {
+  EXPECT_THAT(chapter_of("/nowhere/speed.json"), Not(HasSubstr("speed")));
+}
+
+TEST(SpeedChapter, NamesTheFile_ThatItCannotUse) {
+  for (const char* bad :
+       {"{", "[]", "{}", R"({"machine": {"cpu": "a", "cores": 1, "compiler": "b", "build": "c"}})"}) {
+    EXPECT_THAT([&] { chapter_of_text(bad); },
+                testing::ThrowsMessage<InputError>(AllOf(HasSubstr("speed-for-a-page.json"),
+                                                         HasSubstr("tests/benchmarks/run writes it anew"))))
+        << bad;
+  }
+}
+
+}  // namespace
+}  // namespace carom::test
