@@ -1,0 +1,344 @@
+// How fast Carom is beside its peers, how its cost grows, and what the harness around it costs.
+//
+//   carom-peers [--quick] FILE        measures everything and writes what the page shows into a file: engines
+//                                     write to standard output too. Quick: to see that it works, with numbers
+//                                     that say nothing
+//   carom-peers weigh EVOLVER BALLS   sets up a gas, takes ten steps and ends: for its memory to be measured
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/machine.h"
+#include "carom/carom_engine.h"
+#include "core/error.h"
+#include "core/files.h"
+#include "core/least_squares.h"
+#include "scenario/parse.h"
+#include "tests/benchmarks/speed/processes.h"
+#include "tests/benchmarks/speed/race.h"
+#include "tests/benchmarks/speed/scenes.h"
+#include "trajectory/cpu_time.h"
+
+namespace carom::benchmark {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// How much is measured.
+struct Effort {
+  int rounds = 7;
+  double shortest_s = 0.1;
+  std::size_t thousand = 1000;  ///< what stands for a thousand balls
+  std::size_t most_balls = 1'000'000;
+};
+
+Effort quick() {
+  return {1, 1e-3, 100, 1000};
+}
+
+/// The numbers of balls from a thousand on, each ten times the one before.
+std::vector<std::size_t> decades(const Effort& effort, std::size_t most) {
+  std::vector<std::size_t> counts;
+  for (std::size_t balls = effort.thousand; balls <= std::min(most, effort.most_balls); balls *= 10)
+    counts.push_back(balls);
+  return counts;
+}
+
+/// What the project sets out to reach, and how near it came.
+struct Goal {
+  std::string what;
+  std::string unit;  ///< of the numbers; empty for a ratio
+  bool at_least = true;
+  double limit = 0.0;
+  Samples measured;
+};
+
+Json json_of(const Samples& samples) {
+  return {{"median", samples.median()}, {"low", samples.low()}, {"high", samples.high()}};
+}
+
+Json json_of(const Goal& goal) {
+  const double median = goal.measured.median();
+  return {{"what", goal.what},
+          {"unit", goal.unit},
+          {goal.at_least ? "at_least" : "at_most", goal.limit},
+          {"measured", json_of(goal.measured)},
+          {"met", goal.at_least ? median >= goal.limit : median <= goal.limit}};
+}
+
+/// Everything that is found out.
+struct Findings {
+  Json costs = Json::array();
+  std::vector<Goal> goals;
+
+  void add(const std::string& layout, const std::string& per, const std::vector<Cost>& found) {
+    for (const Cost& cost : found) {
+      costs.push_back({{"layout", layout},
+                       {"per", per},
+                       {"balls", cost.balls},
+                       {"engine", cost.engine},
+                       {"ns", json_of(cost.ns)}});
+    }
+  }
+};
+
+void say(const std::string& what) {
+  fmt::print(stderr, "carom: {}\n", what);
+}
+
+const Samples& of(const std::vector<Cost>& costs, const std::string& engine) {
+  for (const Cost& cost : costs) {
+    if (cost.engine == engine) return cost.ns;
+  }
+  throw std::logic_error("nothing was measured of " + engine);
+}
+
+std::vector<Runner> runners(const std::vector<std::string>& engines, const Scenario& scene) {
+  std::vector<Runner> all;
+  for (const std::string& engine : engines) all.push_back({engine, &scene, Unit::ball_step});
+  return all;
+}
+
+// In space, against Bullet in double precision; with them the event-driven evolver, by the collision.
+void race_in_space(const Effort& effort, Findings& findings) {
+  for (const std::size_t balls : decades(effort, 100'000)) {
+    say(fmt::format("{} balls in space", balls));
+    const Scenario scene = scene_of(gas(3), balls);
+    const Scenario hard_spheres = scene_of(hard_sphere_gas(), balls);
+    std::vector<Runner> field = runners({"bullet-f64", "bullet", "ode", "carom:step", "carom:toi"}, scene);
+    field.push_back({"carom:event", &hard_spheres, Unit::ball_impact});
+    std::vector<Cost> costs = race(field, effort.rounds, effort.shortest_s);
+    const Samples& bullet = of(costs, "bullet-f64");
+    if (balls > effort.thousand) {
+      const std::string where = fmt::format("{} balls in space", balls);
+      const bool ten_thousand = balls == 10 * effort.thousand;
+      findings.goals.push_back({"step, times faster than Bullet in double precision, " + where, "", true,
+                                100.0, ratio(bullet, of(costs, "carom:step"))});
+      findings.goals.push_back({"toi, times faster than Bullet in double precision, " + where, "", true, 40.0,
+                                ratio(bullet, of(costs, "carom:toi"))});
+      findings.goals.push_back(
+          {"event, a collision at nσ³ = 0.5 by a ball's step in Bullet in double precision, " + where, "",
+           false, ten_thousand ? 0.8 : 1.5, ratio(of(costs, "carom:event"), bullet)});
+    }
+    findings.add(hard_sphere_gas().name, "collision", {costs.back()});
+    costs.pop_back();
+    findings.add(gas(3).name, "ball and step", costs);
+  }
+}
+
+// A million balls in the event-driven evolver: that it runs, and how fast.
+void race_a_million(const Effort& effort, Findings& findings) {
+  say(fmt::format("{} balls from collision to collision", effort.most_balls));
+  const Scenario scene = scene_of(hard_sphere_gas(), effort.most_balls);
+  constexpr int kFewRounds = 3;
+  const std::vector<Cost> costs = race({{"carom:event", &scene, Unit::ball_impact}},
+                                       std::min(effort.rounds, kFewRounds), effort.shortest_s);
+  findings.add(hard_sphere_gas().name, "collision", costs);
+  Samples per_second;
+  for (const double ns : costs.front().ns.values) per_second.values.push_back(1e9 / ns);
+  findings.goals.push_back(
+      {fmt::format("event, {} balls run: collisions in a second of CPU", effort.most_balls), "1/s", true, 0.0,
+       per_second});
+}
+
+void race_in_the_plane(const Effort& effort, Findings& findings) {
+  for (const std::size_t balls : decades(effort, 100'000)) {
+    say(fmt::format("{} balls in the plane", balls));
+    const Scenario scene = scene_of(gas(2), balls);
+    const std::vector<Cost> costs =
+        race(runners({"box2d", "chipmunk", "bullet-f64", "ode", "carom:step", "carom:toi"}, scene),
+             effort.rounds, effort.shortest_s);
+    findings.add(gas(2).name, "ball and step", costs);
+    if (balls != 10 * effort.thousand) continue;
+    const std::string where = fmt::format(", {} balls in the plane", balls);
+    findings.goals.push_back({"step, times faster than Box2D without continuous collision" + where, "", true,
+                              50.0, ratio(of(costs, "box2d"), of(costs, "carom:step"))});
+    findings.goals.push_back({"step, times faster than Chipmunk" + where, "", true, 15.0,
+                              ratio(of(costs, "chipmunk"), of(costs, "carom:step"))});
+  }
+}
+
+/// The power of the number of balls by which a step's cost grows, round by round.
+Samples exponents(const std::vector<Cost>& costs) {
+  Samples result;
+  for (std::size_t round = 0; round < costs.front().ns.values.size(); ++round) {
+    std::vector<double> log_balls;
+    std::vector<double> log_cost;
+    for (const Cost& cost : costs) {
+      const auto balls = static_cast<double>(cost.balls);
+      log_balls.push_back(std::log(balls));
+      log_cost.push_back(std::log(balls * cost.ns.values[round]));
+    }
+    result.values.push_back(line_through(log_balls, log_cost).slope);
+  }
+  return result;
+}
+
+// From a thousand to a million balls, which take turns: a round has all of them.
+void race_in_numbers(const Effort& effort, Findings& findings) {
+  constexpr int kFewRounds = 3;
+  for (const Layout& layout : growth_layouts()) {
+    std::vector<Scenario> scenes;
+    for (const std::size_t balls : decades(effort, effort.most_balls))
+      scenes.push_back(scene_of(layout, balls));
+    for (const std::string evolver : {"step", "toi"}) {
+      say(fmt::format("the growth of {}, {}", evolver, layout.name));
+      std::vector<Cost> costs;
+      for (const Scenario& scene : scenes) {
+        costs.push_back(
+            race(runners({"carom:" + evolver}, scene), std::min(effort.rounds, kFewRounds), effort.shortest_s)
+                .front());
+      }
+      findings.add("growth: " + layout.name, "ball and step", costs);
+      findings.goals.push_back(
+          {fmt::format("{}, x where a step costs (number of balls)^x, {}", evolver, layout.name), "", false,
+           1.1, exponents(costs)});
+    }
+  }
+}
+
+fs::path own_program() {
+  return program_prefix() / "bin/carom-peers";
+}
+
+void weigh_balls(const Effort& effort, Findings& findings) {
+  say(fmt::format("the memory of {} balls", effort.most_balls));
+  Samples bytes;
+  const auto balls = static_cast<double>(effort.most_balls);
+  for (int round = 0; round < std::min(effort.rounds, 3); ++round) {
+    bytes.values.push_back(
+        run_program({own_program(), "weigh", "step", fmt::format("{}", effort.most_balls)}).peak_bytes /
+        balls);
+  }
+  findings.goals.push_back(
+      {fmt::format("step, memory of the whole program by the ball, {} balls in space", effort.most_balls),
+       "bytes", false, 200.0, bytes});
+}
+
+/// Files that go with it.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / fmt::format("carom-peers-{}", getpid())) {
+    fs::create_directories(path_);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() { fs::remove_all(path_); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    write_file(path_ / name, text);
+    return path_ / name;
+  }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+/// The CPU time of a comparison that is not its engines' stepping, by that.
+double harness_share(const Folder& folder, const fs::path& scene, std::vector<std::string> engines) {
+  const fs::path json = folder / "result.json";
+  std::vector<std::string> words = {
+      program_prefix() / "bin/carom", "run", scene, "--quiet", "-j", "1", "--json", json};
+  for (std::string& engine : engines) {
+    words.emplace_back("--engine");
+    words.push_back(std::move(engine));
+  }
+  const double cpu_s = run_program(words).cpu_s;
+  double stepping_s = 0.0;
+  const Json result = Json::parse(read_file(json));
+  for (const Json& run : result.at("scenes").at(0).at("runs")) {
+    if (run.at("status") == "ok") stepping_s += run.at("cpu_seconds").get<double>();
+  }
+  return cpu_s / stepping_s - 1.0;
+}
+
+void time_the_harness(const Effort& effort, Findings& findings) {
+  say("the harness");
+  const Folder folder;
+  const fs::path scene = folder.write("scene/gas.toml", toml_of(gas(3), effort.thousand));
+  const fs::path million = folder.write("scene/million.toml", toml_of(gas(3), effort.most_balls));
+  const std::string one_run = fmt::format("{} balls × 1000 steps at 100 frames", effort.thousand);
+  Samples all;
+  Samples own;
+  Samples loading;
+  Samples start;
+  for (int round = 0; round < std::min(effort.rounds, 5); ++round) {
+    all.values.push_back(harness_share(folder, scene, {}));
+    own.values.push_back(harness_share(folder, scene, {"carom:step"}));
+    const double before = cpu_now();
+    load_scene(million);
+    loading.values.push_back(cpu_now() - before);
+    start.values.push_back(
+        run_program({program_prefix() / "bin/carom", "run", "impact/head-on", "--engine", "carom", "--quiet"})
+            .cpu_s);
+  }
+  findings.goals.push_back(
+      {"all that is not stepping, by the stepping: every engine, " + one_run, "", false, 0.05, all});
+  findings.goals.push_back({"the same of carom:step alone", "", false, 0.05, own});
+  findings.goals.push_back(
+      {fmt::format("loading a scene of {} balls", effort.most_balls), "s of CPU", false, 2.0, loading});
+  findings.goals.push_back(
+      {"the harness: a comparison of two balls, from start to end", "s of CPU", false, 0.03, start});
+}
+
+Json measure(const Effort& effort) {
+  Findings findings;
+  weigh_balls(effort, findings);  // first: a program's peak counts that of the one that started it
+  race_in_space(effort, findings);
+  race_a_million(effort, findings);
+  race_in_the_plane(effort, findings);
+  race_in_numbers(effort, findings);
+  time_the_harness(effort, findings);
+  const Machine machine = this_machine();
+  Json goals = Json::array();
+  for (const Goal& goal : findings.goals) goals.push_back(json_of(goal));
+  return {{"machine",
+           {{"cpu", machine.cpu},
+            {"cores", machine.cores},
+            {"compiler", machine.compiler},
+            {"build", machine.build}}},
+          {"rounds", effort.rounds},
+          {"goals", goals},
+          {"costs", findings.costs}};
+}
+
+void be_weighed(const std::string& evolver, std::size_t balls) {
+  const Scenario scene = scene_of(gas(3), balls);
+  constexpr std::int64_t kSteps = 10;
+  make_carom_engine("carom:" + evolver)->create(scene, "faithful")->advance(scene.step_s, kSteps);
+}
+
+int run(const std::vector<std::string>& words) {
+  if (words.size() == 3 && words[0] == "weigh") {
+    be_weighed(words[1], std::stoul(words[2]));
+    return 0;
+  }
+  const bool in_a_hurry = words.size() == 2 && words[0] == "--quick";
+  if (words.size() != (in_a_hurry ? 2 : 1)) {
+    fmt::print(stderr, "Usage: carom-peers [--quick] FILE\n");
+    return 2;
+  }
+  write_file(words.back(), measure(in_a_hurry ? quick() : Effort()).dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace
+}  // namespace carom::benchmark
+
+int main(int argc, char** argv) {
+  try {
+    return carom::benchmark::run({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "carom-peers: {}\n", error.what());
+    return 3;
+  }
+}
