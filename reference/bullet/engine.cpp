@@ -51,7 +51,6 @@ class BulletEngine final : public Engine, public Tunable {
         {Feature::generalized_reflections, own_law},
         {Feature::slab, "the adapter makes walls only"},
         {Feature::barrier, "no rigid-body engine tunnels"},
-        {Feature::events, "the adapter does not change balls while it runs"},
     };
     info.switches = reference::switches_of(kSwitches);
     return info;

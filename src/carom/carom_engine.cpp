@@ -63,7 +63,6 @@ class CaromEngine final : public Engine, public Tunable {
         "as a few turns of the solver bring it; what overlaps is not left to that.",
         "Friction between balls that lie on each other follows the contacts' normals once a step.",
     };
-    info.cannot = {{Feature::events, "carom takes no events yet"}};
     return info;
   }
 

@@ -60,9 +60,7 @@ class LawEngine final : public Engine {
         "ever.",
     };
     const char* one_contact = "a law file says what happens at one contact at a time";
-    info.cannot = {{Feature::simultaneous, one_contact},
-                   {Feature::generalized_reflections, one_contact},
-                   {Feature::events, "carom takes no events yet"}};
+    info.cannot = {{Feature::simultaneous, one_contact}, {Feature::generalized_reflections, one_contact}};
     return info;
   }
 

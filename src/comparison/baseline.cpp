@@ -22,15 +22,18 @@ struct Largest {
 
 Largest largest_of(const Scenario& scene, const Trajectory& trajectory) {
   Largest largest;
+  Cast cast(scene);
   for (std::size_t k = 0; k < trajectory.frames(); ++k) {
+    cast.to_frame(static_cast<std::int64_t>(k));
     double kinetic_J = 0.0;
     double momentum_Ns = 0.0;
     const auto balls = trajectory.frame(k);
     for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (!cast[i]) continue;
       const double reach_m =
           balls[i].position.lpNorm<Eigen::Infinity>() + balls[i].velocity.norm() * scene.duration_s;
       largest.reach_m = std::max(largest.reach_m, reach_m);
-      const Ball& ball = scene.balls[i];
+      const Ball& ball = *cast[i];
       if (std::isinf(ball.mass)) continue;
       const double moment = ball.inertia * ball.mass * ball.radius * ball.radius;
       kinetic_J += 0.5 * (ball.mass * balls[i].velocity.squaredNorm() + moment * balls[i].spin.squaredNorm());

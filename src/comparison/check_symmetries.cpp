@@ -45,15 +45,18 @@ class Judge {
     Distance distance;
     const std::size_t last = trajectory_.frames() - 1;
     std::vector<BallState> seen(trajectory_.balls());
+    Cast cast(*reference_.scenario);
     for (std::size_t k = 0; k <= last; ++k) {
+      cast.to_frame(static_cast<std::int64_t>(k));
       const auto twin_states = of_twin.frame(twin.backwards ? last - k : k);
       const auto states = trajectory_.frame(k);
       for (std::size_t i = 0; i < states.size(); ++i) {
+        if (!cast[i]) continue;
         seen[i] = twin.back(twin_states, i, trajectory_.time(k));
         distance.position_m = std::max(distance.position_m, (seen[i].position - states[i].position).norm());
         distance.same = distance.same && same_digits(seen[i], states[i]);
       }
-      const double change_J = reference_.of(seen).energy_J - reference_.of(states).energy_J;
+      const double change_J = reference_.of(seen, cast).energy_J - reference_.of(states, cast).energy_J;
       distance.energy_J = std::max(distance.energy_J, std::abs(change_J));
     }
     return distance;

@@ -62,7 +62,7 @@ enum class Verdict { pass, fail, shown, unsupported, error };
 
 /// A quantity over the frames of a run, for the plots; NaN where it does not apply.
 struct RunSeries {
-  std::vector<double> energy;    ///< (E - E_0) / E_scale, signed
+  std::vector<double> energy;    ///< (E - E_0 - what events brought) / E_scale
   std::vector<double> momentum;  ///< |P - P_expected| / P_scale
   std::vector<double> position;  ///< m, max over balls against the truth
 };

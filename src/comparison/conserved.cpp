@@ -35,14 +35,37 @@ double scene_size(const Scenario& scenario, const Vec3& origin) {
   return size;
 }
 
+/// What events bring in, from the file alone: the velocities that they set, and the balls that they add.
+struct Given {
+  std::vector<Ball> added;
+  double momentum_Ns = 0.0;  ///< Σ m|v|
+  double energy_J = 0.0;     ///< Σ ½ m v²
+};
+
+Given given_by_events(const Scenario& scene) {
+  Given given;
+  Cast cast(scene);
+  while (cast.next() != nullptr) {
+    for (const BallChange& change : cast.take_next()) {
+      if (!change.before) given.added.push_back(*change.after);
+      const bool set = change.after && (!change.before || change.before->velocity != change.after->velocity);
+      if (!set || !movable(*change.after)) continue;
+      given.momentum_Ns += change.after->mass * change.after->velocity.norm();
+      given.energy_J += 0.5 * change.after->mass * change.after->velocity.squaredNorm();
+    }
+  }
+  return given;
+}
+
 }  // namespace
 
 Reference::Reference(const Scenario& s) : scenario(&s) {
+  const Cast cast(s);
   std::vector<BallState> states;
   double momentum_sum = 0.0;
   for (const Ball& ball : s.balls) {
     states.push_back({ball.position, ball.velocity, ball.spin});
-    fall_m.push_back(fall_depth(s, ball));
+    begin(ball);
     if (!movable(ball)) continue;
     mass_kg += ball.mass;
     origin += ball.mass * ball.position;
@@ -53,32 +76,52 @@ Reference::Reference(const Scenario& s) : scenario(&s) {
     origin /= mass_kg;
     origin_velocity /= mass_kg;
   }
-  start = of(states);
+  const Given given = given_by_events(s);
+  for (const Ball& added : given.added) begin(added);
+  states.resize(cast.size());
+  start = of(states, cast);
   const double gravity_impulse = s.effects.gravity ? mass_kg * s.effects.gravity->norm() * s.duration_s : 0.0;
   momentum_scale_Ns = momentum_sum > 0.0 ? momentum_sum : gravity_impulse;
+  if (momentum_scale_Ns == 0.0) momentum_scale_Ns = given.momentum_Ns;
   energy_scale_J = start.energy_J;
   if (energy_scale_J == 0.0 && mass_kg > 0.0) {
     energy_scale_J = 0.5 * gravity_impulse * gravity_impulse / mass_kg;
   }
+  if (energy_scale_J == 0.0) energy_scale_J = given.energy_J;
   angular_momentum_scale_Nms = momentum_scale_Ns * scene_size(s, origin);
 }
 
-Conserved Reference::of(std::span<const BallState> balls) const {
+void Reference::begin(const Ball& ball) {
+  fall_m.push_back(fall_depth(*scenario, ball));
+  home.push_back(ball.position);
+}
+
+Conserved Reference::of(std::span<const BallState> balls, const Cast& cast) const {
   Conserved sum;
-  const Vec3 gravity = scenario->effects.gravity.value_or(Vec3::Zero());
-  const double g = gravity.norm();
   for (std::size_t i = 0; i < balls.size(); ++i) {
-    const Ball& ball = scenario->balls[i];
-    if (!movable(ball)) continue;
-    const BallState& state = balls[i];
-    const double moment = ball.inertia * ball.mass * ball.radius * ball.radius;
-    sum.energy_J += 0.5 * ball.mass * state.velocity.squaredNorm() + 0.5 * moment * state.spin.squaredNorm() +
-                    ball.mass * (g * fall_m[i] - gravity.dot(state.position - ball.position));
-    sum.momentum_Ns += ball.mass * state.velocity;
-    sum.angular_momentum_Nms +=
-        ball.mass * (state.position - origin).cross(state.velocity) + moment * state.spin;
+    if (!cast[i] || !movable(*cast[i])) continue;
+    Ball ball = *cast[i];
+    ball.position = balls[i].position;
+    ball.velocity = balls[i].velocity;
+    ball.spin = balls[i].spin;
+    const Conserved one = of(ball, i);
+    sum.energy_J += one.energy_J;
+    sum.momentum_Ns += one.momentum_Ns;
+    sum.angular_momentum_Nms += one.angular_momentum_Nms;
   }
   return sum;
+}
+
+Conserved Reference::of(const Ball& ball, std::size_t number) const {
+  if (!movable(ball)) return {};
+  const Vec3 gravity = scenario->effects.gravity.value_or(Vec3::Zero());
+  const double moment = ball.inertia * ball.mass * ball.radius * ball.radius;
+  Conserved one;
+  one.energy_J = 0.5 * ball.mass * ball.velocity.squaredNorm() + 0.5 * moment * ball.spin.squaredNorm() +
+                 ball.mass * (gravity.norm() * fall_m[number] - gravity.dot(ball.position - home[number]));
+  one.momentum_Ns = ball.mass * ball.velocity;
+  one.angular_momentum_Nms = ball.mass * (ball.position - origin).cross(ball.velocity) + moment * ball.spin;
+  return one;
 }
 
 }  // namespace carom

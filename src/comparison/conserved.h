@@ -1,8 +1,10 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "engine/engine.h"
+#include "scenario/cast.h"
 #include "scenario/scenario.h"
 
 namespace carom {
@@ -20,6 +22,7 @@ struct Conserved {
 /// - Energy: the potential energy of a ball is zero where gravity would bring it to rest on a wall, and where
 /// it
 ///   starts if no wall is below it. So E_0 is the energy that the scene can turn into motion.
+/// - A ball that an event adds starts where it is added. One that grows keeps its zero.
 /// - Angular momentum is taken about the centre of mass at t = 0, a point at rest.
 struct Reference {
   explicit Reference(const Scenario& scenario);
@@ -29,12 +32,22 @@ struct Reference {
   Vec3 origin_velocity = Vec3::Zero();  ///< m/s, of the centre of mass at t = 0
   double mass_kg = 0.0;                 ///< of the movable balls
   std::vector<double> fall_m;           ///< per ball, how deep gravity can pull it from where it starts
+  std::vector<Vec3> home;               ///< m, per ball, where it starts
   Conserved start;
-  double energy_scale_J = 0.0;     ///< E_0, or where that is 0 the kinetic energy that gravity can give
-  double momentum_scale_Ns = 0.0;  ///< Σ m|v|, or where that is 0 the impulse that gravity gives
+  /// E_0, or where that is 0 the kinetic energy that gravity can give, or that events give in velocities
+  double energy_scale_J = 0.0;
+  /// Σ m|v|, or where that is 0 the impulse that gravity gives, or that events give in velocities
+  double momentum_scale_Ns = 0.0;
   double angular_momentum_scale_Nms = 0.0;  ///< momentum scale × size of the scene
 
-  Conserved of(std::span<const BallState> balls) const;
+  /// Of the balls that are there.
+  Conserved of(std::span<const BallState> balls, const Cast& cast) const;
+
+  /// Of one of them, by its number.
+  Conserved of(const Ball& ball, std::size_t number) const;
+
+ private:
+  void begin(const Ball& ball);
 };
 
 }  // namespace carom

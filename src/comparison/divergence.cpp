@@ -20,6 +20,7 @@ std::vector<std::size_t> most_different(const Trajectory& a, const Trajectory& b
   constexpr double kAsFarOff = 0.1;
   std::vector<std::pair<double, std::size_t>> distances;
   for (std::size_t i = 0; i < a.balls(); ++i) {
+    if (!a.present(frame, i)) continue;
     distances.emplace_back((a.frame(frame)[i].position - b.frame(frame)[i].position).norm(), i);
   }
   const std::size_t named = std::min<std::size_t>(2, distances.size());

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/random.h"
+#include "scenario/cast.h"
 
 namespace carom {
 
@@ -154,10 +155,11 @@ std::vector<std::size_t> own_places(std::size_t count) {
 
 /// One cycle through all, so that none stays. Source: S. Sattolo, "An algorithm to generate a random cyclic
 /// permutation", Inf. Process. Lett. 22:6 (1986).
-std::vector<std::size_t> other_places(std::size_t count) {
-  std::vector<std::size_t> places = own_places(count);
+/// Balls that events add keep their numbers, which the order of the events gives them.
+std::vector<std::size_t> other_places(const Scenario& scene) {
+  std::vector<std::size_t> places = own_places(numbered_balls(scene));
   Random random(1);
-  for (std::size_t i = count - 1; i > 0; --i) {
+  for (std::size_t i = scene.balls.size() - 1; i > 0; --i) {
     std::swap(places[i], places[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
   }
   return places;
@@ -265,8 +267,7 @@ Twin make_twin(const Scenario& scene, Symmetry symmetry, std::span<const BallSta
   Twin twin;
   twin.frame = frame_for(scene, symmetry);
   twin.backwards = symmetry == Symmetry::reverse;
-  twin.place =
-      symmetry == Symmetry::relabel ? other_places(scene.balls.size()) : own_places(scene.balls.size());
+  twin.place = symmetry == Symmetry::relabel ? other_places(scene) : own_places(numbered_balls(scene));
   if (symmetry == Symmetry::relabel) {
     twin.scenario = relabelled(scene, twin.place);
   } else if (twin.backwards) {
@@ -280,7 +281,7 @@ Twin make_twin(const Scenario& scene, Symmetry symmetry, std::span<const BallSta
 Twin disturbed_twin(const Scenario& scene, double position_m, double velocity_mps) {
   Twin twin;
   twin.scenario = scene;
-  twin.place = own_places(scene.balls.size());
+  twin.place = own_places(numbered_balls(scene));
   Random random(1);
   for (Ball& ball : twin.scenario.balls) {
     if (std::isinf(ball.mass)) continue;

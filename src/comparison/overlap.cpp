@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 namespace carom {
 
@@ -172,8 +173,54 @@ void OverlapSearch::list_if_near(std::uint32_t a, std::uint32_t b, std::span<con
   if ((balls[b].position - balls[a].position).squaredNorm() < reach * reach) near_.emplace_back(a, b);
 }
 
+namespace {
+
+double deepest_in_walls(const Scenario& scenario, const Cast& cast, std::span<const BallState> balls) {
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    if (!cast[i]) continue;
+    const double radius = cast[i]->radius;
+    for (const Wall& wall : scenario.walls) {
+      const double overlap = radius - (wall.normal.dot(balls[i].position) - wall.offset);
+      deepest = std::max(deepest, overlap / radius);
+    }
+  }
+  return deepest;
+}
+
+double deepest_in_pairs(const Cast& cast, std::span<const BallState> balls) {
+  const auto radius = [&](std::size_t i) { return cast[i]->radius; };
+  const auto left = [&](std::size_t i) { return balls[i].position.x() - radius(i); };
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    if (cast[i]) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return left(a) < left(b); });
+
+  double deepest = 0.0;
+  for (std::size_t p = 0; p < order.size(); ++p) {
+    const std::size_t a = order[p];
+    const double right = balls[a].position.x() + radius(a);
+    for (std::size_t q = p + 1; q < order.size() && left(order[q]) < right; ++q) {
+      const std::size_t b = order[q];
+      const double reach = radius(a) + radius(b);
+      const Vec3 between = balls[b].position - balls[a].position;
+      if (between.squaredNorm() >= reach * reach) continue;
+      deepest = std::max(deepest, (reach - between.norm()) / std::min(radius(a), radius(b)));
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+double deepest_overlap(const Scenario& scenario, const Cast& cast, std::span<const BallState> balls) {
+  const double in_walls = deepest_in_walls(scenario, cast, balls);
+  return scenario.effects.collisions ? std::max(in_walls, deepest_in_pairs(cast, balls)) : in_walls;
+}
+
 double deepest_overlap(const Scenario& scenario, std::span<const BallState> balls) {
-  return OverlapSearch(scenario).deepest(balls);
+  return deepest_overlap(scenario, Cast(scenario), balls);
 }
 
 }  // namespace carom

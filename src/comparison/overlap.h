@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "engine/engine.h"
+#include "scenario/cast.h"
 #include "scenario/scenario.h"
 
 namespace carom {
 
 /// Finds the deepest overlap in one moment of a scene after the other. Independent of every engine's own
-/// search.
+/// search. @pre no event changes the balls
 ///
 /// Who is near whom changes slowly: the pairs with a gap of less than two margins are listed, and the list
 /// holds for as long as no ball has moved by more than one margin since. The margin is what balls move in a
@@ -56,7 +57,12 @@ class OverlapSearch {
   Cell counts_{};                      ///< of cells along each axis
 };
 
-/// Of a single moment.
+/// The same of a single moment, and where balls come, go and change: sorts along x and looks only at balls
+/// whose extents overlap there.
+/// @param cast  the balls that are there, with their radii
+double deepest_overlap(const Scenario& scenario, const Cast& cast, std::span<const BallState> balls);
+
+/// The same of the balls that the scene begins with.
 double deepest_overlap(const Scenario& scenario, std::span<const BallState> balls);
 
 }  // namespace carom

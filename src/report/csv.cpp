@@ -9,6 +9,7 @@ std::string trajectory_csv(const Trajectory& trajectory) {
   for (std::size_t k = 0; k < trajectory.frames(); ++k) {
     const auto balls = trajectory.frame(k);
     for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (!trajectory.present(k, i)) continue;
       const Vec3& x = balls[i].position;
       const Vec3& v = balls[i].velocity;
       const Vec3& w = balls[i].spin;

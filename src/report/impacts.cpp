@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "scenario/cast.h"
+
 namespace carom {
 
 namespace {
@@ -43,14 +45,17 @@ double meets_after(const Vec3& from, const Vec3& by, double reach) {
 /// One interval between two frames.
 class Interval {
  public:
-  Interval(const Scenario& scenario, const Trajectory& trajectory, std::size_t frame, double speed_noise)
+  /// @param balls  by number, those that are there throughout and that no event changes in this interval
+  Interval(const Scenario& scenario, const std::vector<std::optional<Ball>>& balls,
+           const Trajectory& trajectory, std::size_t frame, double speed_noise)
       : scene_(scenario),
+        balls_(balls),
         before_(trajectory.frame(frame)),
         after_(trajectory.frame(frame + 1)),
         start_s_(trajectory.time(frame)),
         length_s_(trajectory.time(frame + 1) - start_s_) {
     for (std::size_t i = 0; i < before_.size(); ++i) {
-      if (is_hit(i, speed_noise)) hit_.push_back(i);
+      if (balls_[i] && is_hit(i, speed_noise)) hit_.push_back(i);
     }
   }
 
@@ -70,13 +75,13 @@ class Interval {
   };
 
   Vec3 jump(std::size_t i) const {
-    const Ball& ball = scene_.balls[i];
+    const Ball& ball = *balls_[i];
     return after_[i].velocity - before_[i].velocity -
            0.5 * length_s_ * (acceleration(scene_, ball, before_[i]) + acceleration(scene_, ball, after_[i]));
   }
 
   bool is_hit(std::size_t i, double speed_noise) const {
-    const Ball& ball = scene_.balls[i];
+    const Ball& ball = *balls_[i];
     if (!std::isfinite(ball.mass)) return false;
     const Vec3 change = acceleration(scene_, ball, after_[i]) - acceleration(scene_, ball, before_[i]);
     return jump(i).norm() > change.norm() * length_s_ + speed_noise;
@@ -95,6 +100,7 @@ class Interval {
   }
 
   const Scenario& scene_;
+  const std::vector<std::optional<Ball>>& balls_;
   std::span<const BallState> before_;
   std::span<const BallState> after_;
   double start_s_;
@@ -104,8 +110,8 @@ class Interval {
 
 /// When the pair touches in the interval, as a share of it, from either end.
 std::optional<double> Interval::pair_meets(std::size_t i, std::size_t j) const {
-  const double smaller = std::min(scene_.balls[i].radius, scene_.balls[j].radius);
-  const double reach = scene_.balls[i].radius + scene_.balls[j].radius + kTouching * smaller;
+  const double smaller = std::min(balls_[i]->radius, balls_[j]->radius);
+  const double reach = balls_[i]->radius + balls_[j]->radius + kTouching * smaller;
   const double forward = meets_after(before_[i].position - before_[j].position, onward(i) - onward(j), reach);
   if (forward <= 1.0) return forward;
   const double back = meets_after(after_[i].position - after_[j].position, backward(i) - backward(j), reach);
@@ -122,14 +128,14 @@ double Interval::turns_after(std::size_t i) const {
 }
 
 std::optional<double> Interval::wall_meets(std::size_t i) const {
-  const double near = kTouching * scene_.balls[i].radius;
+  const double near = kTouching * balls_[i]->radius;
   const double share = turns_after(i);
   const Vec3 there = before_[i].position + share * length_s_ * before_[i].velocity + share * share * fall();
   const auto is_at = [&](const Vec3& normal, double offset, double reach) {
     const double depth_m = length_s_ * std::abs(jump(i).dot(normal)) * 1e-3;
     return std::abs(std::abs(normal.dot(there) - offset) - reach) < near + depth_m;
   };
-  const double radius = scene_.balls[i].radius;
+  const double radius = balls_[i]->radius;
   for (const Wall& wall : scene_.walls) {
     if (is_at(wall.normal, wall.offset, radius)) return share;
   }
@@ -149,7 +155,7 @@ std::optional<double> Interval::wall_meets(std::size_t i) const {
 std::vector<Interval::Span> Interval::spans() const {
   std::vector<Span> spans;
   const auto add = [&](std::size_t i) {
-    const double r = (1.0 + kTouching) * scene_.balls[i].radius;
+    const double r = (1.0 + kTouching) * balls_[i]->radius;
     const double x[] = {before_[i].position.x(), before_[i].position.x() + onward(i).x(),
                         after_[i].position.x(), after_[i].position.x() + backward(i).x()};
     const auto [low, high] = std::minmax_element(std::begin(x), std::end(x));
@@ -157,7 +163,7 @@ std::vector<Interval::Span> Interval::spans() const {
   };
   for (const std::size_t i : hit_) add(i);
   for (std::size_t i = 0; i < before_.size(); ++i) {
-    if (!std::isfinite(scene_.balls[i].mass)) add(i);
+    if (balls_[i] && !std::isfinite(balls_[i]->mass)) add(i);
   }
   std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) { return a.low < b.low; });
   return spans;
@@ -170,7 +176,7 @@ std::vector<SeenImpact> Interval::impacts() const {
   for (std::size_t a = 0; a < sweeps.size(); ++a) {
     for (std::size_t b = a + 1; b < sweeps.size() && sweeps[b].low <= sweeps[a].high; ++b) {
       const auto [i, j] = std::minmax(sweeps[a].ball, sweeps[b].ball);
-      if (!std::isfinite(scene_.balls[i].mass) && !std::isfinite(scene_.balls[j].mass)) continue;
+      if (!std::isfinite(balls_[i]->mass) && !std::isfinite(balls_[j]->mass)) continue;
       const std::optional<double> share = pair_meets(i, j);
       if (!share) continue;
       found.push_back(impact(*share, i, static_cast<std::int32_t>(j)));
@@ -184,6 +190,14 @@ std::vector<SeenImpact> Interval::impacts() const {
         impact(share.value_or(turns_after(i)), i, share ? SeenImpact::kWall : SeenImpact::kUnknown));
   }
   return found;
+}
+
+/// The balls that the next interval can be read from.
+std::vector<std::optional<Ball>> undisturbed(Cast& cast, std::int64_t frame_after) {
+  std::vector<std::optional<Ball>> balls;
+  for (std::size_t i = 0; i < cast.size(); ++i) balls.push_back(cast[i]);
+  cast.to_frame(frame_after, [&](const BallChange& change) { balls[change.ball].reset(); });
+  return balls;
 }
 
 double fastest_mps(const Trajectory& trajectory) {
@@ -201,8 +215,12 @@ SeenImpacts find_impacts(const Scenario& scenario, const Trajectory& trajectory,
   SeenImpacts seen;
   const double speed_noise = kSpeedNoise * fastest_mps(trajectory);
   std::set<Meeting> held;
+  Cast cast(scenario);
+  cast.to_frame(0);
+  std::vector<std::optional<Ball>> balls(scenario.balls.begin(), scenario.balls.end());
   for (std::size_t k = 0; k + 1 < trajectory.frames(); ++k) {
-    const Interval interval(scenario, trajectory, k, speed_noise);
+    if (!scenario.events.empty()) balls = undisturbed(cast, static_cast<std::int64_t>(k) + 1);
+    const Interval interval(scenario, balls, trajectory, k, speed_noise);
     std::set<Meeting> meeting;
     if (!interval.quiet()) {
       std::vector<SeenImpact> impacts = interval.impacts();

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "comparison/conserved.h"
+#include "comparison/metrics/brought.h"
 #include "report/json_number.h"
 
 namespace carom {
@@ -86,7 +88,26 @@ Json energy_by_cause(const std::optional<EnergySplit>& split) {
           {"ball_impacts", number_or_null(split->ball_impacts_J)},
           {"wall_impacts", number_or_null(split->wall_impacts_J)},
           {"friction", number_or_null(split->friction_J)},
-          {"position_correction", number_or_null(split->correction_J)}};
+          {"position_correction", number_or_null(split->correction_J)},
+          {"events", number_or_null(split->events_J)}};
+}
+
+/// What each event of the scene did in this run.
+Json interferences(const Scenario& scene, const Run& run) {
+  Json json = Json::array();
+  const Reference reference(scene);
+  for (const Interference& each : run.interferences) {
+    const Conserved brought = brought_by(reference, each);
+    Json balls = Json::array();
+    for (const BallChange& change : each.changes) balls.push_back(change.ball);
+    json.push_back({{"time", each.time_s},
+                    {"balls", std::move(balls)},
+                    {"energy", number_or_null(brought.energy_J)},
+                    {"momentum", vector(brought.momentum_Ns)},
+                    {"angular_momentum", vector(brought.angular_momentum_Nms)},
+                    {"overlap", number_or_null(each.overlap_radii)}});
+  }
+  return json;
 }
 
 Json gates(const RunComparison& result) {
@@ -134,9 +155,15 @@ Json final_states(const Scenario& scene, const Trajectory& trajectory, bool all_
   Json json = Json::array();
   const auto balls = trajectory.frame(trajectory.frames() - 1);
   const std::size_t listed = all_balls ? balls.size() : std::min(balls.size(), kListedBalls);
+  Cast cast(scene);
+  cast.to_frame(scene.frames);
   for (std::size_t i = 0; i < listed; ++i) {
-    json.push_back({{"mass", number_or_null(scene.balls[i].mass)},
-                    {"radius", scene.balls[i].radius},
+    if (!cast[i]) {
+      json.push_back(nullptr);  // gone; the others keep their places, which are their numbers
+      continue;
+    }
+    json.push_back({{"mass", number_or_null(cast[i]->mass)},
+                    {"radius", cast[i]->radius},
                     {"position", vector(balls[i].position)},
                     {"velocity", vector(balls[i].velocity)},
                     {"spin", vector(balls[i].spin)}});
@@ -173,6 +200,7 @@ Json run_json(const Scenario& scene, const RunComparison& result, bool all_balls
       {"symmetries", symmetries(result)},
       {"statistics", statistics(result.statistics)},
       {"energy_by_cause", energy_by_cause(result.energy_split)},
+      {"events", interferences(scene, run)},
       {"gates", gates(result)},
       {"verdict", name_of(result.verdict)},
       {"final", ok ? final_states(scene, run.trajectory, all_balls) : Json::array()}};

@@ -11,6 +11,7 @@
 #include "report/impacts.h"
 #include "report/json_number.h"
 #include "report/pack.h"
+#include "scenario/cast.h"
 
 namespace carom {
 
@@ -57,8 +58,9 @@ bool finite(const BallState& state) {
 /// The number of frames until the first that is not finite.
 std::size_t known_frames(const Trajectory& trajectory) {
   for (std::size_t k = 0; k < trajectory.frames(); ++k) {
-    const auto states = trajectory.frame(k);
-    if (!std::all_of(states.begin(), states.end(), finite)) return k;
+    for (std::size_t i = 0; i < trajectory.balls(); ++i) {
+      if (trajectory.present(k, i) && !finite(trajectory.frame(k)[i])) return k;
+    }
   }
   return trajectory.frames();
 }
@@ -66,14 +68,19 @@ std::size_t known_frames(const Trajectory& trajectory) {
 Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories,
                const PlaybackLimits& limits) {
   double radius = std::numeric_limits<double>::infinity();
-  for (const Ball& ball : scenario.balls) radius = std::min(radius, ball.radius);
+  ever(scenario, [&](const Ball& ball) {
+    radius = std::min(radius, ball.radius);
+    return false;
+  });
   double farthest = 0.0;
   double fastest = 0.0;
   double spin = 0.0;
   for (const Trajectory* trajectory : trajectories) {
     const std::size_t frames = known_frames(*trajectory);
     for (std::size_t k = 0; k < frames; ++k) {
-      for (const BallState& state : trajectory->frame(k)) {
+      for (std::size_t i = 0; i < trajectory->balls(); ++i) {
+        if (!trajectory->present(k, i)) continue;
+        const BallState& state = trajectory->frame(k)[i];
         farthest = std::max(farthest, state.position.cwiseAbs().maxCoeff());
         fastest = std::max(fastest, state.velocity.cwiseAbs().maxCoeff());
         spin = std::max(spin, state.spin.cwiseAbs().maxCoeff());
@@ -88,7 +95,7 @@ Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& t
 Cut cut_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories,
            const PlaybackLimits& limits) {
   Cut cut;
-  cut.balls = std::min(scenario.balls.size(), limits.balls);
+  cut.balls = std::min(numbered_balls(scenario), limits.balls);
   const auto intervals = static_cast<std::size_t>(scenario.frames);
   const std::size_t most = std::max<std::size_t>(limits.states / std::max<std::size_t>(cut.balls, 1), 2);
   cut.every = most > intervals ? 1 : (intervals + most - 2) / (most - 1);
@@ -110,9 +117,13 @@ std::string pack_states(const Trajectory& trajectory, std::span<const std::size_
       std::uint32_t last = 0;
       std::uint32_t last_change = 0;
       for (const std::size_t k : frames) {
-        const double value = std::nearbyint(quantity(trajectory.frame(k)[i])[axis] / grid);
-        // Differences wrap around, and so does their sum.
-        const auto now = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
+        // A ball that is not there is packed where it was.
+        std::uint32_t now = last;
+        if (trajectory.present(k, i)) {
+          const double value = std::nearbyint(quantity(trajectory.frame(k)[i])[axis] / grid);
+          // Differences wrap around, and so does their sum.
+          now = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
+        }
         const std::uint32_t change = now - last;
         differences.push_back(static_cast<std::int32_t>(order == 2 ? change - last_change : change));
         last = now;
@@ -131,18 +142,20 @@ std::string pack_energies(const Reference& reference, const Trajectory& trajecto
   std::vector<double> translation;
   std::vector<double> rotation;
   std::vector<double> potential;
+  Cast cast(scenario);
   for (const std::size_t k : frames) {
+    cast.to_frame(static_cast<std::int64_t>(k));
     double moving = 0.0;
     double turning = 0.0;
     double falling = 0.0;
     for (std::size_t i = 0; i < trajectory.balls(); ++i) {
-      const Ball& ball = scenario.balls[i];
-      if (!std::isfinite(ball.mass)) continue;
+      if (!cast[i] || !std::isfinite(cast[i]->mass)) continue;
+      const Ball& ball = *cast[i];
       const BallState& state = trajectory.frame(k)[i];
       moving += 0.5 * ball.mass * state.velocity.squaredNorm();
       turning += 0.5 * ball.inertia * ball.mass * ball.radius * ball.radius * state.spin.squaredNorm();
-      falling +=
-          ball.mass * (gravity.norm() * reference.fall_m[i] - gravity.dot(state.position - ball.position));
+      falling += ball.mass *
+                 (gravity.norm() * reference.fall_m[i] - gravity.dot(state.position - reference.home[i]));
     }
     translation.push_back(moving);
     rotation.push_back(turning);
@@ -263,26 +276,61 @@ Json scene_json(const Scenario& scenario) {
   return json;
 }
 
+/// What events do to the balls that are shown, by the first frame that shows it.
+Json changes_json(const Scenario& scenario, std::size_t shown) {
+  Json changes = Json::array();
+  Cast cast(scenario);
+  while (cast.next() != nullptr) {
+    const std::int64_t frame = first_frame_after(scenario, *cast.next());
+    for (const BallChange& change : cast.take_next()) {
+      if (change.ball >= shown) continue;
+      Json json = {{"frame", frame}, {"ball", change.ball}, {"there", change.after.has_value()}};
+      if (change.after) {
+        json["mass"] = number_or_null(change.after->mass);
+        json["radius"] = change.after->radius;
+      }
+      changes.push_back(std::move(json));
+    }
+  }
+  return changes;
+}
+
+/// Balls as they are when they are first there.
+std::vector<Ball> first_balls(const Scenario& scenario) {
+  std::vector<Ball> balls = scenario.balls;
+  Cast cast(scenario);
+  while (cast.next() != nullptr) {
+    for (const BallChange& change : cast.take_next()) {
+      if (!change.before) balls.push_back(*change.after);
+    }
+  }
+  return balls;
+}
+
 Json balls_json(const Scenario& scenario, std::size_t shown) {
   std::vector<double> masses;
   std::vector<double> radii;
   std::vector<double> inertias;
+  const std::vector<Ball> balls = first_balls(scenario);
   for (std::size_t i = 0; i < shown; ++i) {
-    masses.push_back(scenario.balls[i].mass);
-    radii.push_back(scenario.balls[i].radius);
-    inertias.push_back(scenario.balls[i].inertia);
+    masses.push_back(balls[i].mass);
+    radii.push_back(balls[i].radius);
+    inertias.push_back(balls[i].inertia);
   }
-  return {{"count", scenario.balls.size()},
+  return {{"count", balls.size()},
           {"shown", shown},
+          {"first", std::min(scenario.balls.size(), shown)},
           {"mass", pack_doubles(masses)},
           {"radius", pack_doubles(radii)},
-          {"inertia", pack_doubles(inertias)}};
+          {"inertia", pack_doubles(inertias)},
+          {"changes", changes_json(scenario, shown)}};
 }
 
 bool same_states(const Trajectory& a, const Trajectory& b) {
   if (a.frames() != b.frames() || a.balls() != b.balls()) return false;
   for (std::size_t k = 0; k < a.frames(); ++k) {
     for (std::size_t i = 0; i < a.balls(); ++i) {
+      if (!a.present(k, i) && !b.present(k, i)) continue;
       const BallState& s = a.frame(k)[i];
       const BallState& t = b.frame(k)[i];
       if (s.position != t.position || s.velocity != t.velocity || s.spin != t.spin) return false;

@@ -31,8 +31,11 @@ struct PlaybackLimits {
 ///   scene       id, title, dimension, duration and step (s), gravity, box, walls, slabs, barriers, spin,
 ///   collisions, and
 ///               events (time, ball, and the factors or states of its actions)
-///   balls       count (of all), shown, and of each that is shown mass (kg), radius (m), inertia: packed
-///   doubles frames      intervals (of the run), every: those kept are 0, every, 2 every, … and the last;
+///   balls       count (of all), shown, first (those of them that are there at the start), and of each that
+///   is
+///               shown mass (kg), radius (m), inertia, when it is first there: packed doubles; changes by
+///               events: frame (of the run), ball, there (or gone), and its mass and radius from then on
+///   frames      intervals (of the run), every: those kept are 0, every, 2 every, … and the last;
 ///   count of those kept rounding    position_m, speed_mps, spin_radps: the grid on which these stand; each
 ///   is off by at most half of it runs        label, status, reason, precision; of one that ended well either
 ///   `same_as` (the label of a run with the

@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/error.h"
 #include "core/files.h"
+#include "scenario/cast.h"
 #include "scenario/generate.h"
 #include "scenario/read.h"
 #include "scenario/room.h"
@@ -210,12 +212,12 @@ void read_balls(Reader& root, Scenario& scene, const SceneOptions& options) {
   }
 }
 
-Event read_event(Reader& reader, const Scenario& scene) {
+/// Whether the ball that it is about is there is checked once all events are in order.
+Event read_event(Reader& reader, const Scenario& scene, std::size_t numbers) {
   Event event;
   const Range within{0.0, scene.duration_s, false, false, "a time within the duration"};
   event.time = reader.required("time", reader.number("time", within));
-  const auto last = static_cast<std::int64_t>(scene.balls.size()) - 1;
-  const auto ball = reader.integer("ball", 0, last);
+  const auto ball = reader.integer("ball", 0, static_cast<std::int64_t>(numbers) - 1);
   if (const auto factor = reader.number("scale_mass", kPositive)) event.actions.push_back(ScaleMass{*factor});
   if (const auto factor = reader.number("scale_radius", kPositive)) {
     event.actions.push_back(ScaleRadius{*factor});
@@ -233,6 +235,60 @@ Event read_event(Reader& reader, const Scenario& scene) {
   if (about_a_ball) event.ball = static_cast<std::size_t>(reader.required("ball", ball));
   reader.finish();
   return event;
+}
+
+bool is_about_a_ball(const Event& event) {
+  return !std::all_of(event.actions.begin(), event.actions.end(),
+                      [](const Action& action) { return std::holds_alternative<AddBall>(action); });
+}
+
+/// What no ball can be.
+void check_grown(const Reader& reader, const Scenario& scene, const Ball& before, const Ball& after) {
+  const bool immovable = std::isinf(before.mass);
+  if (!immovable && !(std::isfinite(after.mass) && after.mass > 0.0)) {
+    reader.fail_value("scale_mass", fmt::format("a factor that keeps {} kg finite and above 0", before.mass));
+  }
+  if (!(std::isfinite(after.radius) && after.radius > 0.0)) {
+    reader.fail_value("scale_radius",
+                      fmt::format("a factor that keeps {} m finite and above 0", before.radius));
+  }
+  Scenario grown = scene;
+  grown.balls = {after};
+  // Only walls that face each other count here: which side of a slab the ball is on, the file does not tell.
+  grown.slabs.clear();
+  if (lack_of_room(grown)) {
+    reader.fail("", fmt::format("the ball has a diameter of {} m then, and stands between walls nearer to "
+                                "each other, allowed: at most their distance",
+                                2.0 * after.radius));
+  }
+}
+
+/// Events in the order in which they happen, each about a ball that is there then.
+void read_events(Reader& root, Scenario& scene) {
+  std::vector<Reader> readers = root.tables("event");
+  std::size_t numbers = scene.balls.size();
+  for (Reader reader : readers)  // a copy: what a reader was asked for, it names in errors
+    numbers += reader.has("add_ball") ? 1 : 0;
+  std::vector<std::pair<Event, Reader>> read;
+  for (Reader& reader : readers) {
+    Event event = read_event(reader, scene, numbers);
+    read.emplace_back(std::move(event), reader);
+  }
+  std::stable_sort(read.begin(), read.end(),
+                   [](const auto& a, const auto& b) { return a.first.time < b.first.time; });
+  for (const auto& [event, reader] : read) scene.events.push_back(event);
+  Cast cast(scene);
+  for (const auto& [event, reader] : read) {
+    if (is_about_a_ball(event) && (event.ball >= cast.size() || !cast[event.ball])) {
+      reader.fail_value("ball",
+                        fmt::format("a ball that is there at t = {} s (from 0 to {}, without those that an "
+                                    "event removed before or adds later)",
+                                    event.time, cast.size() - 1));
+    }
+    for (const BallChange& change : cast.take_next()) {
+      if (change.after) check_grown(reader, scene, change.before.value_or(*change.after), *change.after);
+    }
+  }
 }
 
 Limits read_limits(Reader& reader) {
@@ -294,7 +350,7 @@ void read_scene(Reader& root, const SceneOptions& options, Scenario& scene) {
   read_contacts(root, scene);
   read_solids(root, scene);
   read_balls(root, scene, options);
-  for (Reader& reader : root.tables("event")) scene.events.push_back(read_event(reader, scene));
+  read_events(root, scene);
   if (auto truth = root.table("truth")) scene.truth = read_truth(*truth);
   if (auto symmetry = root.table("symmetry")) scene.symmetries = read_symmetries(*symmetry);
   if (auto gate = root.table("gate")) scene.gate = read_gate(*gate, options.engines);
@@ -316,8 +372,6 @@ ScenarioPtr parse_scene(std::string_view toml_text, const std::string& file, con
     throw InputError(
         fmt::format("{}:{}:{}: not TOML: {}", file, place.line, place.column, error.description()));
   }
-  std::stable_sort(scene->events.begin(), scene->events.end(),
-                   [](const Event& a, const Event& b) { return a.time < b.time; });
   return scene;
 }
 

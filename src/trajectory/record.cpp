@@ -4,13 +4,14 @@
 #include <sys/mman.h>
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "scenario/cast.h"
 #include "trajectory/cpu_time.h"
+#include "trajectory/staged_run.h"
 
 namespace carom {
 
@@ -31,42 +32,55 @@ std::shared_ptr<T[]> shared_array(std::size_t count) {
   return {static_cast<T*>(memory), [bytes](T* start) { munmap(start, bytes); }};
 }
 
-void record_frame(const Simulation& simulation, Trajectory& trajectory, std::size_t frame) {
-  // What an engine forgets to write must not pass for a ball at rest.
-  const Vec3 unwritten = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (BallState& state : trajectory.frame(frame)) state = {unwritten, unwritten, unwritten};
-  simulation.snapshot(trajectory.frame(frame));
-  trajectory.tally(frame) = simulation.tally();
+void record_frame(const StagedRun& run, Trajectory& trajectory, std::size_t frame) {
+  run.snapshot(trajectory.frame(frame));
+  trajectory.tally(frame) = run.tally();
 }
 
-/// The body of a recording process: simulates, records into the shared trajectory, returns the rest as JSON.
+/// A simulation of the scene, or of what an event has made of it. @throws NotTaken
+std::unique_ptr<Simulation> create(const Engine& engine, const EngineChoice& choice, const Scenario& scene) {
+  const std::string unsupported = unsupported_reason(engine, scene, choice.profile);
+  if (!unsupported.empty()) throw NotTaken(unsupported);
+  return create_simulation(engine, scene, choice);
+}
+
+/// Simulates, records into the shared trajectory, adds the rest to the result. @throws NotTaken
+void simulate(const Scenario& scenario, const StagedRun::Create& create, Trajectory& trajectory,
+              Json& result) {
+  StagedRun run(scenario, create);
+  double cpu_seconds = 0.0;
+  std::int64_t steps = 0;
+  record_frame(run, trajectory, 0);
+  for (std::size_t frame = 1; frame < trajectory.frames(); ++frame) {
+    const double before = cpu_now();
+    steps += run.to_next_frame();
+    cpu_seconds += cpu_now() - before;
+    record_frame(run, trajectory, frame);
+  }
+  result["cpu_seconds"] = cpu_seconds;
+  result["steps"] = steps;
+  result["uncertainty_m"] = run.uncertainty_m();
+  result["interferences"] = packed(run.interferences());
+  for (const auto& [name, value] : run.settings()) {
+    std::visit([&, &key = name](const auto& v) { result["settings"][key] = v; }, value);
+  }
+}
+
+/// The body of a recording process: what it does not record it returns as JSON.
 std::string record(const Scenario& scenario, const EngineChoice& choice, Trajectory trajectory) {
   const Engine& engine = choice.source.open();
   const EngineInfo info = engine.info();
   Json result = {{"version", info.version}, {"precision", info.precision}};
-  const std::string unsupported = unsupported_reason(engine, scenario, choice.profile);
-  if (!unsupported.empty()) {
-    result["unsupported"] = unsupported;
+  const auto lacking = info.cannot.find(Feature::events);
+  if (!scenario.events.empty() && lacking != info.cannot.end()) {
+    result["unsupported"] = fmt::format("{}: {}", name_of(Feature::events), lacking->second);
     return result.dump();
   }
-
-  const std::unique_ptr<Simulation> simulation = create_simulation(engine, scenario, choice);
-  const std::int64_t steps = steps_per_frame(scenario);
-  const double interval_s = scenario.duration_s / static_cast<double>(scenario.frames);
-  double cpu_seconds = 0.0;
-  record_frame(*simulation, trajectory, 0);
-  for (std::size_t frame = 1; frame < trajectory.frames(); ++frame) {
-    const double before = cpu_now();
-    simulation->advance(interval_s / static_cast<double>(steps), steps);
-    cpu_seconds += cpu_now() - before;
-    record_frame(*simulation, trajectory, frame);
-  }
-
-  result["cpu_seconds"] = cpu_seconds;
-  result["steps"] = steps * scenario.frames;
-  result["uncertainty_m"] = simulation->uncertainty_m();
-  for (const auto& [name, value] : simulation->settings()) {
-    std::visit([&, &key = name](const auto& v) { result["settings"][key] = v; }, value);
+  try {
+    simulate(
+        scenario, [&](const Scenario& stage) { return create(engine, choice, stage); }, trajectory, result);
+  } catch (const NotTaken& reason) {
+    result["unsupported"] = reason.what();
   }
   return result.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -88,6 +102,7 @@ std::string not_finite(const Trajectory& trajectory) {
     }
     const auto balls = trajectory.frame(frame);
     for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (!trajectory.present(frame, i)) continue;
       if (balls[i].position.allFinite() && balls[i].velocity.allFinite() && balls[i].spin.allFinite())
         continue;
       return fmt::format("the state of ball {} is not finite at t = {:.6g} s", i, trajectory.time(frame));
@@ -108,6 +123,7 @@ void take_result(const std::string& payload, Run& run) {
   run.cpu_seconds = result.at("cpu_seconds");
   run.steps = result.at("steps");
   run.uncertainty_m = result.at("uncertainty_m");
+  run.interferences = unpacked_interferences(result.at("interferences"));
   if (result.contains("settings")) {
     for (const auto& [name, value] : result.at("settings").items()) run.settings[name] = setting_value(value);
   }
@@ -119,10 +135,23 @@ void take_result(const std::string& payload, Run& run) {
 
 Trajectory::Trajectory(const Scenario& scenario)
     : frames_(static_cast<std::size_t>(scenario.frames) + 1),
-      balls_(scenario.balls.size()),
+      balls_(numbered_balls(scenario)),
       duration_s_(scenario.duration_s),
       states_(shared_array<BallState>(frames_ * balls_)),
-      tallies_(shared_array<Tally>(frames_)) {}
+      tallies_(shared_array<Tally>(frames_)) {
+  if (scenario.events.empty()) return;
+  absent_ = std::make_shared<std::vector<bool>>(frames_ * balls_);
+  const Vec3 nowhere = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  Cast cast(scenario);
+  for (std::size_t k = 0; k < frames_; ++k) {
+    cast.to_frame(static_cast<std::int64_t>(k));
+    for (std::size_t i = 0; i < balls_; ++i) {
+      if (cast[i]) continue;
+      (*absent_)[k * balls_ + i] = true;
+      frame(k)[i] = {nowhere, nowhere, nowhere};
+    }
+  }
+}
 
 std::unique_ptr<Simulation> create_simulation(const Engine& engine, const Scenario& scenario,
                                               const EngineChoice& choice) {
@@ -133,25 +162,18 @@ std::unique_ptr<Simulation> create_simulation(const Engine& engine, const Scenar
   return engine.create_switched(scenario, choice.profile, choice.switched);
 }
 
-std::int64_t steps_per_frame(const Scenario& scenario) {
-  const double steps = scenario.duration_s / static_cast<double>(scenario.frames) / scenario.step_s;
-  // A whole number that the two divisions above rounded up is that number: each errs by at most ½ε.
-  const double whole = std::ceil(steps * (1.0 - 2.0 * std::numeric_limits<double>::epsilon()));
-  return static_cast<std::int64_t>(std::max(whole, 1.0));
-}
-
 std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineChoice>& engines,
                              const ProcessLimits& limits, int parallel,
                              const std::function<void(std::size_t)>& done) {
   std::vector<Run> runs;
   std::vector<Job> jobs;
   const double trajectory_mib = static_cast<double>(sizeof(BallState)) *
-                                static_cast<double>(scenario.balls.size()) *
+                                static_cast<double>(numbered_balls(scenario)) *
                                 static_cast<double>(scenario.frames + 1) / (1024.0 * 1024.0);
   if (trajectory_mib > limits.memory_mib) {
     throw MachineError(fmt::format("{}: {} balls in {} frames take {:.0f} MiB, more than --memory {:g}",
-                                   scenario.file, scenario.balls.size(), scenario.frames + 1, trajectory_mib,
-                                   limits.memory_mib));
+                                   scenario.file, numbered_balls(scenario), scenario.frames + 1,
+                                   trajectory_mib, limits.memory_mib));
   }
   for (const EngineChoice& choice : engines) {
     Run& run = runs.emplace_back();

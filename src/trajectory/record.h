@@ -8,6 +8,7 @@
 
 #include "engine/engine.h"
 #include "engine/tuning.h"
+#include "trajectory/intervals.h"
 #include "trajectory/isolate.h"
 #include "trajectory/trajectory.h"
 
@@ -42,8 +43,5 @@ std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineC
 /// `version` gives the reason.
 std::vector<EngineInfo> describe_engines(const std::vector<EngineSource>& engines,
                                          const ProcessLimits& limits, int parallel);
-
-/// The number of equal steps, none longer than the scene's step, that an interval between frames is cut into.
-std::int64_t steps_per_frame(const Scenario& scenario);
 
 }  // namespace carom

@@ -5,9 +5,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/engine.h"
 #include "scenario/scenario.h"
+#include "trajectory/interference.h"
 
 namespace carom {
 
@@ -20,7 +22,7 @@ class Trajectory {
   explicit Trajectory(const Scenario& scenario);
 
   std::size_t frames() const { return frames_; }  ///< the initial one included
-  std::size_t balls() const { return balls_; }
+  std::size_t balls() const { return balls_; }    ///< by number (scenario/cast.h)
   double time(std::size_t frame) const {
     return duration_s_ * static_cast<double>(frame) / static_cast<double>(frames_ - 1);
   }
@@ -28,6 +30,11 @@ class Trajectory {
   std::span<BallState> frame(std::size_t frame) { return {states_.get() + frame * balls_, balls_}; }
   std::span<const BallState> frame(std::size_t frame) const {
     return {states_.get() + frame * balls_, balls_};
+  }
+  /// Whether a ball is there in a frame: events add balls and take them away. The state of one that is not is
+  /// NaN.
+  bool present(std::size_t frame, std::size_t ball) const {
+    return !absent_ || !(*absent_)[frame * balls_ + ball];
   }
   Tally& tally(std::size_t frame) { return tallies_.get()[frame]; }
   const Tally& tally(std::size_t frame) const { return tallies_.get()[frame]; }
@@ -38,6 +45,7 @@ class Trajectory {
   double duration_s_ = 0.0;
   std::shared_ptr<BallState[]> states_;
   std::shared_ptr<Tally[]> tallies_;
+  std::shared_ptr<std::vector<bool>> absent_;  ///< by frame and ball; none: all are always there
 };
 
 /// An engine in a profile, as on the command line: the profile is named unless it is the faithful one.
@@ -59,7 +67,8 @@ struct Run {
   double cpu_seconds = 0.0;  ///< of the stepping alone
   std::int64_t steps = 0;
   double uncertainty_m = 0.0;
-  Trajectory trajectory;  ///< meaningless unless the status is ok
+  std::vector<Interference> interferences;  ///< what the scene's events did, in order
+  Trajectory trajectory;                    ///< meaningless unless the status is ok
 
   std::string label() const { return engine_label(engine, profile); }
 };

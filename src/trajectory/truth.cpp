@@ -1,10 +1,13 @@
 #include "trajectory/truth.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "scenario/cast.h"
 #include "trajectory/cpu_time.h"
 #include "trajectory/record.h"
 
@@ -21,13 +24,20 @@ constexpr double kAround = 1e-9;
 constexpr std::array kShares = {1.0 - kAround, 1.0, 1.0 + kAround};
 constexpr std::size_t kMiddle = 1;
 
-/// The moments of all frames, as the engines step to them: kShares.size() for each.
-std::vector<Moment> moments_of(const Scenario& scenario) {
+/// The last frame that shows none of what events do; nothing where the first frame does.
+std::optional<std::int64_t> last_frame_before_events(const Scenario& scenario) {
+  if (scenario.events.empty()) return scenario.frames;
+  const std::int64_t first = first_frame_after(scenario, scenario.events.front());
+  return first > 0 ? std::optional(first - 1) : std::nullopt;
+}
+
+/// The moments of the frames up to the last, as the engines step to them: kShares.size() for each.
+std::vector<Moment> moments_of(const Scenario& scenario, std::int64_t last_frame) {
   const std::int64_t steps = steps_per_frame(scenario);
   const double step_s =
       scenario.duration_s / static_cast<double>(scenario.frames) / static_cast<double>(steps);
   std::vector<Moment> moments;
-  for (std::int64_t frame = 0; frame <= scenario.frames; ++frame) {
+  for (std::int64_t frame = 0; frame <= last_frame; ++frame) {
     for (const double share : kShares) moments.push_back({share * step_s, frame * steps});
   }
   return moments;
@@ -100,9 +110,27 @@ void tell_impacts(const Scenario& scenario, const std::vector<std::shared_ptr<co
   }
 }
 
+/// The scene as if nobody interfered, as far as that is how it goes.
+Scenario undisturbed(const Scenario& scenario, std::int64_t last_frame) {
+  Scenario scene = scenario;
+  scene.events.clear();
+  scene.duration_s = frame_time_s(scenario, last_frame);
+  return scene;
+}
+
+/// What is left of a solution where events happen after this frame.
+void end_at_events(const Scenario& scenario, std::int64_t last_frame, Solution& solution) {
+  const double until_s = frame_time_s(scenario, last_frame);
+  if (solution.known_until_s && *solution.known_until_s <= until_s) return;
+  solution.known_until_s = until_s;
+  solution.limit = fmt::format("somebody interferes at t = {} s", scenario.events.front().time);
+}
+
 /// The body of the solving process: the first source that takes the scene, or why none does.
-std::string solve(const Scenario& scenario, const std::vector<std::shared_ptr<const TruthSource>>& sources,
+std::string solve(const Scenario& whole, std::int64_t last_frame,
+                  const std::vector<std::shared_ptr<const TruthSource>>& sources,
                   std::array<Trajectory, kShares.size()> trajectories) {
+  const Scenario scenario = whole.events.empty() ? whole : undisturbed(whole, last_frame);
   std::string reasons;
   for (const auto& source : sources) {
     if (!asks_for(scenario.truth, source->kind())) continue;
@@ -111,7 +139,7 @@ std::string solve(const Scenario& scenario, const std::vector<std::shared_ptr<co
       reasons += (reasons.empty() ? "" : "; ") + reason;
       continue;
     }
-    const std::vector<Moment> moments = moments_of(scenario);
+    const std::vector<Moment> moments = moments_of(whole, last_frame);
     const double before = cpu_now();
     Solution solution = source->solve(
         scenario, moments, [&](std::size_t k, std::span<const BallState> balls, const Tally& tally) {
@@ -122,6 +150,7 @@ std::string solve(const Scenario& scenario, const std::vector<std::shared_ptr<co
         });
     const double cpu_seconds = cpu_now() - before;
     tell_impacts(scenario, sources, moments, solution);
+    if (!whole.events.empty()) end_at_events(whole, last_frame, solution);
     Json json = to_json(solution);
     json["kind"] = source->kind();
     json["cpu_seconds"] = cpu_seconds;
@@ -140,10 +169,15 @@ Truth record_truth(const Scenario& scenario, const std::vector<std::shared_ptr<c
     truth.reason = "the scene asks for none";
     return truth;
   }
+  const std::optional<std::int64_t> last_frame = last_frame_before_events(scenario);
+  if (!last_frame || *last_frame == 0) {
+    truth.reason = fmt::format("somebody interferes at t = {} s", scenario.events.front().time);
+    return truth;
+  }
   std::array<Trajectory, kShares.size()> trajectories;
   for (Trajectory& trajectory : trajectories) trajectory = Trajectory(scenario);
   const ProcessOutcome outcome =
-      run_isolated({[&] { return solve(scenario, sources, trajectories); }}, limits, 1).front();
+      run_isolated({[&] { return solve(scenario, *last_frame, sources, trajectories); }}, limits, 1).front();
   if (outcome.end != ProcessEnd::finished) {
     truth.reason = outcome.reason;
     return truth;

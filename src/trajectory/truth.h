@@ -30,7 +30,8 @@ struct Truth {
 };
 
 /// Solves the scene by the first of the sources that can, in a process of its own; scene.truth says which are
-/// asked.
+/// asked. Events start from what each engine has come to, which is its own: the truth ends with the last
+/// frame before the first of them.
 Truth record_truth(const Scenario& scenario, const std::vector<std::shared_ptr<const TruthSource>>& sources,
                    const ProcessLimits& limits);
 

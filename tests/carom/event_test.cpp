@@ -669,7 +669,6 @@ TEST(EventEvolver, Refuses_WithAReason) {
   EXPECT_TRUE(refuses([](Scenario& s) { s.effects.magnus = 0.1; }));
   EXPECT_TRUE(refuses([](Scenario& s) { s.slabs.emplace_back(); }));
   EXPECT_TRUE(refuses([](Scenario& s) { s.barriers.emplace_back(); }));
-  EXPECT_TRUE(refuses([](Scenario& s) { s.events.emplace_back(); }));
   EXPECT_TRUE(refuses([](Scenario& s) { s.multi_contact = MultiContact::simultaneous; }));
 }
 

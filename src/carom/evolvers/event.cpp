@@ -31,7 +31,6 @@ std::string event_refusal(const Scenario& scene) {
   if (scene.effects.magnus) return "it jumps along exact flights, and takes no Magnus force";
   if (!scene.slabs.empty()) return "its walls have one side: it takes no slabs";
   if (!scene.barriers.empty()) return "its walls have one side: it takes no quantum barriers";
-  if (!scene.events.empty()) return "its flights end by impacts alone: it takes no events";
   if (scene.multi_contact != MultiContact::sequential) {
     return "it carries out one impact after the other: it takes no law for several contacts at once";
   }

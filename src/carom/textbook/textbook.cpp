@@ -88,7 +88,6 @@ class TextbookEngine final : public Engine {
         {Feature::immovable, "p = 2s/(m₁ + m₂) is 0 for an infinite mass, and p m is not a number"},
         {Feature::slab, "the program's only solids are walls"},
         {Feature::barrier, "no formula for it is in the program's text"},
-        {Feature::events, "the program's mass by mouse click takes no time of the scene"},
     };
     return info;
   }

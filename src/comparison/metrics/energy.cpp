@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "comparison/metrics/brought.h"
+
 namespace carom {
 
 namespace {
@@ -14,8 +16,7 @@ std::optional<double> above_zero(std::optional<double> value) {
 
 /// It pushes the others without an account of the work it does.
 bool moving_immovable(const Scenario& s) {
-  return std::any_of(s.balls.begin(), s.balls.end(),
-                     [](const Ball& ball) { return std::isinf(ball.mass) && !ball.velocity.isZero(0.0); });
+  return ever(s, [](const Ball& ball) { return std::isinf(ball.mass) && !ball.velocity.isZero(0.0); });
 }
 
 /// Whether something in the scene can turn energy into heat.
@@ -31,16 +32,17 @@ void measure_energy(const Yardstick& yardstick, const std::vector<Conserved>& co
                     RunComparison& result) {
   const Scenario& scene = yardstick.scene();
   const double start_J = yardstick.reference().start.energy_J;
+  const std::vector<Conserved> brought = brought_by_events(yardstick.reference(), result.run);
   std::vector<double> gains;
   std::vector<double> losses;
   double lowest_J = start_J;
   for (std::size_t k = 0; k < conserved.size(); ++k) {
-    const double energy_J = conserved[k].energy_J;
+    const double energy_J = conserved[k].energy_J - brought[k].energy_J;
     result.series.energy.push_back(yardstick.by_energy(energy_J - start_J));
     if (yardstick.truth_known_at(k)) {
       gains.push_back(yardstick.by_energy(yardstick.energy_off_truth(conserved[k], k)));
       losses.push_back(-gains.back());
-    } else if (!moving_immovable(scene) && scene.events.empty()) {
+    } else if (!moving_immovable(scene)) {
       if (dissipates(scene)) {
         gains.push_back(yardstick.by_energy(energy_J - lowest_J));
       } else {

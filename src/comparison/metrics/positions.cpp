@@ -10,11 +10,12 @@ double Distances::add(const Trajectory& a, const Trajectory& b, std::size_t fram
   const auto balls_a = a.frame(frame);
   const auto balls_b = b.frame(frame);
   for (std::size_t i = 0; i < balls_a.size(); ++i) {
+    if (!a.present(frame, i)) continue;
+    ++count_;
     const double square = (balls_a[i].position - balls_b[i].position).squaredNorm();
     farthest_square = std::max(farthest_square, square);
     squares_ += square;
   }
-  count_ += balls_a.size();
   return std::sqrt(farthest_square);
 }
 

@@ -51,8 +51,11 @@ double Yardstick::relative(double deviation, double scale) {
 
 std::vector<Conserved> Yardstick::conserved_of(const Trajectory& trajectory) const {
   std::vector<Conserved> conserved;
-  for (std::size_t k = 0; k < trajectory.frames(); ++k)
-    conserved.push_back(reference_.of(trajectory.frame(k)));
+  Cast cast(scene_);
+  for (std::size_t k = 0; k < trajectory.frames(); ++k) {
+    cast.to_frame(static_cast<std::int64_t>(k));
+    conserved.push_back(reference_.of(trajectory.frame(k), cast));
+  }
   return conserved;
 }
 

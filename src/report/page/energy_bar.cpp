@@ -29,8 +29,8 @@ struct Look {
 };
 
 constexpr std::array<Look, kBarLooks> kLooks = {Look{"c7 hollow", false, false}, Look{"c1", false, false},
-                                                Look{"c5", true, false}, Look{"c4", false, true},
-                                                Look{"c3", true, true}};
+                                                Look{"c5", true, false},         Look{"c4", false, true},
+                                                Look{"c3", true, true},          Look{"c2", true, false}};
 
 /// Lines across a part, in the colour of the card that it lies on.
 std::string stripes(const Look& look, double left, double width) {

@@ -14,7 +14,7 @@ struct BarPart {
   double amount = 0.0;
 };
 
-inline constexpr std::size_t kBarLooks = 5;
+inline constexpr std::size_t kBarLooks = 6;
 
 /// What bars that stand under each other can show, so that they can be compared: from -lost to gained, both
 /// at least 0.

@@ -25,6 +25,7 @@ constexpr std::array kCauses = {
     Cause{"wall impacts", &EnergySplit::wall_impacts_J},
     Cause{"friction", &EnergySplit::friction_J},
     Cause{"position correction", &EnergySplit::correction_J},
+    Cause{"events", &EnergySplit::events_J},
 };
 
 static_assert(kCauses.size() == kBarLooks);

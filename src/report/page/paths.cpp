@@ -9,6 +9,7 @@
 #include "report/page/canvas.h"
 #include "report/page/view.h"
 #include "report/page/wording.h"
+#include "scenario/cast.h"
 
 namespace carom::page {
 
@@ -30,7 +31,9 @@ class Picture {
  public:
   /// @param first  whether it is the first picture of its scene
   Picture(const SceneComparison& scene, const View& view, const Canvas& canvas, bool first)
-      : scene_(*scene.scene), view_(view), canvas_(canvas), first_(first) {}
+      : scene_(*scene.scene), view_(view), canvas_(canvas), first_(first), cast_(*scene.scene) {
+    cast_.to_frame(scene_.frames);
+  }
 
   void draw_surroundings() const;
   void draw_truth(const Trajectory& truth) const;
@@ -43,9 +46,15 @@ class Picture {
     return canvas_.at(position.x(), position.y());
   }
 
+  /// Of a ball at the end; at the start of one that is gone then.
   double radius_px(std::size_t ball) const {
-    return scene_.balls[ball].radius * canvas_.height / (view_.y_high - view_.y_low);
+    return px_of(cast_[ball] ? cast_[ball]->radius : first_m(ball));
   }
+  double first_radius_px(std::size_t ball) const { return px_of(first_m(ball)); }
+  double first_m(std::size_t ball) const {
+    return ball < scene_.balls.size() ? scene_.balls[ball].radius : 0.0;
+  }
+  double px_of(double length_m) const { return length_m * canvas_.height / (view_.y_high - view_.y_low); }
 
   static std::size_t points_per_path(const Trajectory& trajectory) {
     return std::min(kPointsPerPicture / std::clamp<std::size_t>(trajectory.balls(), 1, kDrawnPaths),
@@ -71,6 +80,7 @@ class Picture {
   const View& view_;
   const Canvas& canvas_;
   bool first_;
+  Cast cast_;  ///< as it is at the end
 };
 
 /// A sheet between two parallel lines that reach beyond the picture, or nothing where it is not seen edge-on.
@@ -202,7 +212,7 @@ void Picture::draw_run(const Trajectory& trajectory, const LineStyle& style) con
 void Picture::draw_discs(const Trajectory& trajectory, const LineStyle& style) const {
   for (std::size_t i = 0; i < std::min(trajectory.balls(), kDrawnPaths); ++i) {
     const Point start = at(trajectory, 0, i);
-    draw_disc("start " + style.colour_class, start, radius_px(i));
+    draw_disc("start " + style.colour_class, start, first_radius_px(i));
     draw_disc("stop " + style.colour_class, at(trajectory, trajectory.frames() - 1, i), radius_px(i));
     if (trajectory.balls() > 1 && trajectory.balls() <= kNumberedBalls) draw_number(start, i);
   }
@@ -250,6 +260,7 @@ std::string finding(const SceneComparison& scene, const RunComparison& run) {
   const Trajectory& trajectory = run.run.trajectory;
   const int dimension = scene.scene->dimension;
   for (std::size_t i = 0; i < std::min<std::size_t>(trajectory.balls(), 3); ++i) {
+    if (!trajectory.present(0, i) || !trajectory.present(trajectory.frames() - 1, i)) continue;
     text += fmt::format("Ball {} goes from {} m to {} m. ", i,
                         coordinates(trajectory.frame(0)[i].position, dimension),
                         coordinates(trajectory.frame(trajectory.frames() - 1)[i].position, dimension));

@@ -53,9 +53,10 @@ std::vector<double> expected_energy(const SceneComparison& scene) {
   const Reference reference(*scene.scene);
   const Trajectory& truth = scene.truth.trajectory;
   std::vector<double> energies;
+  const Cast cast(*scene.scene);  // the truth ends before the first event
   for (std::size_t k = 0; k < truth.frames(); ++k) {
     const bool known = truth.time(k) <= scene.truth.horizon_s.value_or(scene.scene->duration_s);
-    const double energy_J = reference.of(truth.frame(k)).energy_J - reference.start.energy_J;
+    const double energy_J = reference.of(truth.frame(k), cast).energy_J - reference.start.energy_J;
     energies.push_back(known ? energy_J / reference.energy_scale_J
                              : std::numeric_limits<double>::quiet_NaN());
   }

@@ -39,10 +39,13 @@ std::size_t drawn(const Trajectory& trajectory) {
 /// What the drawn balls cover along a coordinate, their radii included.
 Interval covered(const Scenario& scene, const Trajectory& trajectory, int axis) {
   Interval interval;
+  Cast cast(scene);
   for (std::size_t k = 0; k < trajectory.frames(); ++k) {
+    cast.to_frame(static_cast<std::int64_t>(k));
     for (std::size_t i = 0; i < drawn(trajectory); ++i) {
+      if (!cast[i]) continue;
       const double centre = trajectory.frame(k)[i].position[axis];
-      interval.take(centre - scene.balls[i].radius, centre + scene.balls[i].radius);
+      interval.take(centre - cast[i]->radius, centre + cast[i]->radius);
     }
   }
   return interval;

@@ -23,7 +23,7 @@ class PlainEngine final : public Engine {
       info.profiles.push_back({std::string(defect.name), std::string(defect.what)});
     }
     for (const Feature feature :
-         {Feature::simultaneous, Feature::generalized_reflections, Feature::barrier, Feature::events}) {
+         {Feature::simultaneous, Feature::generalized_reflections, Feature::barrier}) {
       info.cannot[feature] = "it is too plain for that";
     }
     return info;
