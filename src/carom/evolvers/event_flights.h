@@ -57,6 +57,11 @@ class EventFlights {
     return Vec<Dim>::Zero();
   }
 
+  /// How its flight began, at its clock.
+  Motion<Dim> start(std::uint32_t ball) const {
+    return {bodies_[ball].x, bodies_[ball].v, acceleration(ball)};
+  }
+
   /// Where the ball is at a time of its flight.
   Motion<Dim> motion(std::uint32_t ball, double time_s) const {
     const Body& body = bodies_[ball];

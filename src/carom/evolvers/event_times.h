@@ -45,7 +45,7 @@ class EventTimes {
     if constexpr (kGravity) return true;
     const EventWall<Dim>& wall = walls_[index];
     const double clock = flights_.clock(ball);
-    const Motion<Dim> start = flights_.motion(ball, clock);
+    const Motion<Dim> start = flights_.start(ball);
     const double closing = -wall.normal.dot(start.v);
     const double rounding_s = kEpsilon * (std::abs(clock) + std::abs(until_s));
     return closing > 0.0 && gap(ball, start, wall) <= 2.0 * closing * (until_s - clock + rounding_s);
@@ -55,8 +55,8 @@ class EventTimes {
   double to_wall(std::uint32_t ball, std::uint32_t index) const {
     const EventWall<Dim>& wall = walls_[index];
     const double clock = flights_.clock(ball);
-    const Motion<Dim> start = flights_.motion(ball, clock);
-    const double rounding = velocity_rounding(start.v.norm() + field_speed_);
+    const Motion<Dim> start = flights_.start(ball);
+    const double rounding = velocity_rounding(speed_bound(start.v) + field_speed_);
     return clock + time_to_close(gap(ball, start, wall), wall.normal.dot(start.v), wall.normal.dot(start.a),
                                  rounding, step_s_);
   }
@@ -95,7 +95,7 @@ class EventTimes {
     const Vec<Dim> d = b.x - a.x;
     const Vec<Dim> w = b.v - a.v;
     const double sigma = flights_.radius(i) + flights_.radius(j);
-    const double rounding = velocity_rounding(a.v.norm() + b.v.norm() + field_speed_);
+    const double rounding = velocity_rounding(speed_bound(a.v) + speed_bound(b.v) + field_speed_);
     if constexpr (kGravity) {
       const Vec<Dim> relative = b.a - a.a;
       if (!relative.isZero(0.0)) {
@@ -110,13 +110,21 @@ class EventTimes {
   /// @param lower  the cell's lowest corner, m
   EventCrossing to_crossing(std::uint32_t ball, const Vec<Dim>& lower, double width_m, double time_s) const {
     EventCrossing first;
+    const auto see = [&](double time, int axis, int direction) {
+      if (time >= first.time) return;
+      first = {time, static_cast<std::int8_t>(axis), static_cast<std::int8_t>(direction)};
+    };
     for (int axis = 0; axis < Dim; ++axis) {
-      for (const int direction : {-1, 1}) {
-        const double side = direction > 0 ? lower[axis] + width_m : lower[axis];
-        const double time = to_side(ball, axis, direction, side, time_s);
-        if (time < first.time) {
-          first = {time, static_cast<std::int8_t>(axis), static_cast<std::int8_t>(direction)};
-        }
+      const double upper = lower[axis] + width_m;
+      if constexpr (kGravity) {
+        see(to_side(ball, axis, -1, lower[axis], time_s), axis, -1);
+        see(to_side(ball, axis, 1, upper, time_s), axis, 1);
+      } else {
+        // A straight flight passes the side that it heads for; the other it has passed before.
+        const Motion<Dim> start = flights_.start(ball);
+        const bool up = start.v[axis] > 0.0;
+        const double wait = ((up ? upper : lower[axis]) - start.x[axis]) / start.v[axis];
+        see(start.v[axis] == 0.0 ? kNever : flights_.clock(ball) + wait, axis, up ? 1 : -1);
       }
     }
     return first;
@@ -127,21 +135,17 @@ class EventTimes {
     return wall.normal.dot(motion.x) - wall.offset - flights_.radius(ball);
   }
 
-  /// When the ball passes a side of its cell on the way up (direction 1) or down (-1) the axis, after
-  /// `time_s`. Straight flights pass the side that they head for, the others have passed it before.
+  /// When a falling ball passes a side of its cell on the way up (direction 1) or down (-1) the axis, after
+  /// `time_s`.
   double to_side(std::uint32_t ball, int axis, int direction, double side, double time_s) const {
-    if constexpr (kGravity) {
-      const Motion<Dim> motion = flights_.motion(ball, time_s);
-      const double gap = std::max(0.0, direction * (side - motion.x[axis]));
-      return time_s +
-             time_to_close(gap, -direction * motion.v[axis], -direction * motion.a[axis], 0.0, step_s_);
-    } else {
-      const double clock = flights_.clock(ball);
-      const Motion<Dim> start = flights_.motion(ball, clock);
-      if (direction * start.v[axis] <= 0.0) return kNever;
-      return clock + (side - start.x[axis]) / start.v[axis];
-    }
+    const Motion<Dim> motion = flights_.motion(ball, time_s);
+    const double gap = std::max(0.0, direction * (side - motion.x[axis]));
+    return time_s +
+           time_to_close(gap, -direction * motion.v[axis], -direction * motion.a[axis], 0.0, step_s_);
   }
+
+  /// |v|, or up to √Dim more: for rounding, without a root.
+  static double speed_bound(const Vec<Dim>& v) { return v.template lpNorm<1>(); }
 
   /// Both balls when both are on their present flights.
   std::pair<Motion<Dim>, Motion<Dim>> motions(std::uint32_t i, std::uint32_t j) const {
