@@ -59,6 +59,14 @@ class PairList {
   /// Every ball has gone at most this far, m.
   void travelled(double way_m) { travelled_m_ += way_m * kRoundUp + rounding_m_; }
 
+  /// A ball may get this far from where it was when the list was made, m, whatever the others do.
+  void strays(std::size_t ball, double radius, double way_m) {
+    travelled_m_ = std::max(travelled_m_, way_m);
+    if (radius + way_m <= bound_[ball]) return;
+    bound_[ball] = radius + way_m;
+    broad_phase_->bound_grew(ball);
+  }
+
   /// A ball was put this far away, m, beside what it travels.
   void jumped(std::size_t ball, double way_m) {
     if (jumps_m_.empty()) jumps_m_.resize(bound_.size(), 0.0F);
@@ -78,15 +86,17 @@ class PairList {
   }
 
   /// Makes the list for the balls where they are.
-  /// @param way_m  of each ball, how far the list must hold, m
+  /// @param position  where that is; what stays as it is can be asked of the broad phase later
+  /// @param way_m     of each ball, how far the list must hold at least, m
   template <class Way>
-  void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, const Way& way_m) {
+  void build(const World<Dim>& world, const VectorColumn<Dim>& position,
+             const std::vector<Plane<Dim>>& planes, const Way& way_m) {
     choose_skin(world);
     bound_.resize(world.size());
     for (std::size_t i = 0; i < bound_.size(); ++i) {
       bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
     }
-    broad_phase_->build(world.position, bound_);
+    broad_phase_->build(position, bound_);
     broad_phase_->find_pairs(pairs_);
     find_planes(world, planes);
     forget_ways(world);
@@ -99,10 +109,7 @@ class PairList {
   std::span<const BallPair> besides() const { return besides_; }
 
   std::string_view name() const { return broad_phase_->name(); }
-  BroadPhase<Dim>& broad_phase() { return *broad_phase_; }
   const BroadPhase<Dim>& broad_phase() const { return *broad_phase_; }
-  /// How far each ball may get from where it was when the list was made, and its radius; m.
-  std::vector<double>& bounds() { return bound_; }
 
  private:
   /// Pairs that the skin adds for each ball: more of them make every step dearer, fewer make lists shorter
@@ -168,7 +175,7 @@ class PairList {
   double rounding_m_ = 0.0;  ///< of coordinates, in a step
   double farthest_jump_m_ = 0.0;
   std::vector<float> jumps_m_;  ///< of each ball; empty before the first
-  std::vector<double> bound_;   ///< m
+  std::vector<double> bound_;   ///< m, radius and how far the ball may get from where it was
   std::vector<BallPair> pairs_;
   std::vector<BallPair> besides_;
   int builds_in_this_order_ = kBuildsInAnOrder;

@@ -130,15 +130,19 @@ class Cluster {
         gather_touching_pair(next, other, seed, time_s, contacts);
       }
     }
-    std::sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
-      return std::tie(x.a, x.wall, x.b) < std::tie(y.a, y.wall, y.b);
-    });
+    const auto rank = [this](const ClosedContact<Dim>& contact) {
+      const std::uint32_t b = contact.wall ? contact.b : world().number_of(contact.b);
+      return std::tuple(world().number_of(contact.a), contact.wall, b);
+    };
+    std::sort(contacts.begin(), contacts.end(),
+              [&](const auto& x, const auto& y) { return rank(x) < rank(y); });
   }
 
-  /// The order of a broad phase is its own; the order of the contacts decides the last bits.
+  /// By their numbers: the order of a broad phase is its own, and that of the contacts decides the last bits.
   const std::vector<std::uint32_t>& near_sorted(std::uint32_t ball) {
     neighbours_.find_near(ball, near_);
-    std::sort(near_.begin(), near_.end());
+    std::sort(near_.begin(), near_.end(),
+              [this](std::uint32_t a, std::uint32_t b) { return world().before(a, b); });
     return near_;
   }
 
@@ -193,7 +197,9 @@ class Cluster {
     const bool is_seed = !seed.wall && std::minmax(ball, other) == std::minmax(seed.a, seed.b);
     if (!is_seed && gap_between(ball, other, x) > touch_rounding(x)) return;
     if (!join(other, time_s)) flights_.fly_to(other, time_s);
-    const auto [a, b] = std::minmax(ball, other);
+    const bool first = world().before(ball, other);
+    const std::uint32_t a = first ? ball : other;
+    const std::uint32_t b = first ? other : ball;
     contacts.push_back({a, b, false, normal_between<Dim>(world().position[a], world().position[b]), 1.0});
   }
 

@@ -233,7 +233,9 @@ class Crowd {
   }
 
   /// Which of a contact's balls is a, and which b, is as it was met: -1 where b has the lower number.
-  static double side_of(const Kept& contact) { return contact.wall || contact.a < contact.b ? 1.0 : -1.0; }
+  double side_of(const Kept& contact) const {
+    return contact.wall || world().before(contact.a, contact.b) ? 1.0 : -1.0;
+  }
 
   static Place impulse_of(const Kept& contact) { return contact.push * contact.normal + contact.drag; }
 
@@ -257,7 +259,8 @@ class Crowd {
     entering_.assign(1, ball);
     for (std::size_t next = 0; !held_.empty() && next < entering_.size(); ++next) {
       neighbours_.find_near(entering_[next], leaning_);
-      std::sort(leaning_.begin(), leaning_.end());
+      std::sort(leaning_.begin(), leaning_.end(),
+                [this](std::uint32_t a, std::uint32_t b) { return world().before(a, b); });
       for (const std::uint32_t other : leaning_) {
         if (has(other) || !held_.has(entering_[next], other, false) || !cluster_.join(other, time_s_))
           continue;

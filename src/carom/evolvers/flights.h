@@ -1,10 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <vector>
 
 #include "carom/account.h"
+#include "carom/broad_phase/reach.h"
 #include "carom/flight.h"
 #include "carom/world.h"
 
@@ -12,6 +16,9 @@ namespace carom {
 
 /// The balls within a step, each flying on its own parabola from its own moment on, and the account of what
 /// walls and immovable balls push.
+///
+/// Few balls are hit in a step. These are touched one by one, and a record is kept of each; the others fly
+/// from the step's start to its end together, in loops over plain arrays.
 ///
 /// @tparam kAccelerates  false: no acceleration is stored, added, or even zero
 /// @tparam kFriction     whether pushes can turn the balls
@@ -26,6 +33,7 @@ class Flights {
         model_(std::move(model)),
         clock_(world_.size(), 0.0),
         stamp_(world_.size(), 0),
+        touched_(world_.size(), kUntouched),
         acceleration_(kAccelerates ? world_.size() : 0),
         force_(kAccelerates ? world_.size() : 0),
         spin_acceleration_(kTurning ? world_.size() : 0),
@@ -55,23 +63,43 @@ class Flights {
   /// Begins a step: every ball flies freely.
   void begin_step(double step_s) {
     step_s_ = step_s;
-    field_speed_ = 0.0;
-    std::fill(stamp_.begin(), stamp_.end(), 0);
-    std::fill(clock_.begin(), clock_.end(), 0.0);
     if constexpr (kAccelerates) {
       model_->accelerations(world_, step_s, acceleration_);
-      double largest = 0.0;
-      for (std::size_t i = 0; i < size(); ++i) largest = std::max(largest, acceleration_[i].squaredNorm());
-      field_speed_ = step_s * std::sqrt(largest);
-      for (std::size_t i = 0; i < size(); ++i) force_.set(i, Vec<Dim>::Zero());
-    }
-    if constexpr (kTurning) {
-      for (std::size_t i = 0; i < size(); ++i) still(i);
+      field_speed_ = step_s * largest_norm(acceleration_);
+      measure_fastest();
     }
   }
 
   void finish_step() {
-    for (std::size_t i = 0; i < size(); ++i) fly_to(i, step_s_);
+    // In the order of their numbers: what bears them is added up.
+    std::sort(records_.begin(), records_.end(),
+              [this](const Record& a, const Record& b) { return world_.before(a.ball, b.ball); });
+    for (const Record& record : records_) fly_to(record.ball, step_s_);
+    fly_all_to_end();
+    for (const Record& record : records_) forget(record.ball);
+    records_.clear();
+  }
+
+  /// How far a ball gets in this step at most, m, if it is not hit.
+  double longest_path() const { return (fastest_ + 0.5 * field_speed_) * step_s_; }
+
+  /// Makes the bound on the speeds what it is at this moment.
+  void measure_fastest() { fastest_ = largest_norm(world_.velocity); }
+
+  /// Where the ball can get in this step.
+  Reach<Dim> reach(std::size_t ball) const {
+    if (touched_[ball] != kUntouched) return records_[touched_[ball]].reach;
+    return {world_.position[ball], world_.radius[ball] + path_bound(ball, step_s_)};
+  }
+
+  /// After a new flight has begun; returns whether the ball can get farther than before.
+  bool widen_reach(std::size_t ball) {
+    Reach<Dim>& reach = record_of(ball).reach;
+    const double moved = (world_.position[ball] - reach.centre).norm();
+    const double bound = world_.radius[ball] + moved + path_bound(ball, left_s(ball));
+    if (bound <= reach.bound) return false;
+    reach.bound = bound;
+    return true;
   }
 
   /// A ball's flight from its clock on.
@@ -93,6 +121,7 @@ class Flights {
 
   /// Moves the ball along its flight to a time of the step, and books what bears it on the way.
   void fly_to(std::size_t ball, double time_s) {
+    record_of(ball);
     const double tau = time_s - clock_[ball];
     if constexpr (kAccelerates) {
       if (!force_[ball].isZero(0.0)) book_force(ball, tau);
@@ -113,7 +142,7 @@ class Flights {
       force_.set(ball, Vec<Dim>::Zero());
     }
     if constexpr (kTurning) still(ball);
-    ++stamp_[ball];
+    note_flight(ball);
   }
 
   /// A new, straight flight with the velocity as it stands.
@@ -123,7 +152,7 @@ class Flights {
       force_.set(ball, Vec<Dim>::Zero());
     }
     if constexpr (kTurning) still(ball);
-    ++stamp_[ball];
+    note_flight(ball);
   }
 
   /// What a force N accelerates a ball by, 1/kg: less than 1/m where its own motion is damped.
@@ -139,6 +168,56 @@ class Flights {
   }
 
  private:
+  /// Of a ball that was touched in this step.
+  struct Record {
+    std::uint32_t ball;
+    Reach<Dim> reach;
+  };
+
+  static constexpr std::uint32_t kUntouched = std::numeric_limits<std::uint32_t>::max();
+
+  /// Makes a record of the ball as it is, unless there is one.
+  Record& record_of(std::size_t ball) {
+    if (touched_[ball] == kUntouched) {
+      const Reach<Dim> from_here = reach(ball);
+      touched_[ball] = static_cast<std::uint32_t>(records_.size());
+      records_.push_back({static_cast<std::uint32_t>(ball), from_here});
+    }
+    return records_[touched_[ball]];
+  }
+
+  void note_flight(std::size_t ball) {
+    record_of(ball);
+    ++stamp_[ball];
+    fastest_ = std::max(fastest_, world_.velocity[ball].norm());
+  }
+
+  void forget(std::size_t ball) {
+    touched_[ball] = kUntouched;
+    clock_[ball] = 0.0;
+    stamp_[ball] = 0;
+    if constexpr (kAccelerates) force_.set(ball, Vec<Dim>::Zero());
+    if constexpr (kTurning) still(ball);
+  }
+
+  /// What fly_to() does, for all balls; those that are there already stay.
+  void fly_all_to_end() {
+    for (int axis = 0; axis < Dim; ++axis) {
+      const std::span<double> x = world_.position.axis(axis);
+      const std::span<double> v = world_.velocity.axis(axis);
+      if constexpr (kAccelerates) {
+        const std::span<const double> a = std::as_const(acceleration_).axis(axis);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          const double tau = step_s_ - clock_[i];
+          x[i] += tau * (v[i] + (0.5 * tau) * a[i]);
+          v[i] += tau * a[i];
+        }
+      } else {
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] += (step_s_ - clock_[i]) * v[i];
+      }
+    }
+  }
+
   void still(std::size_t ball) {
     spin_acceleration_.set(ball, Spin<Dim>::Zero());
     torque_.set(ball, Spin<Dim>::Zero());
@@ -168,8 +247,11 @@ class Flights {
   Account<Dim> account_;
   double step_s_ = 0.0;
   double field_speed_ = 0.0;
+  double fastest_ = std::numeric_limits<double>::infinity();  ///< m/s, no ball is faster
   std::vector<double> clock_;  ///< s, from the start of the step: where position and velocity stand
   std::vector<std::uint32_t> stamp_;
+  std::vector<std::uint32_t> touched_;  ///< of each ball, which of the records is its
+  std::vector<Record> records_;
   VectorColumn<Dim> acceleration_;
   VectorColumn<Dim> force_;  ///< N, by the walls and immovable balls that bear the ball
   VectorColumn<kSpinAxes<Dim>> spin_acceleration_;

@@ -36,27 +36,33 @@ class HeldContacts {
 
   bool empty() const { return held_.empty(); }
 
-  void hold(std::size_t a, std::size_t b, bool wall) { held_[contact_key(a, b, wall)] = stamps(a, b, wall); }
+  void hold(std::size_t a, std::size_t b, bool wall) { held_[key(a, b, wall)] = stamps(a, b, wall); }
 
   bool has(std::size_t a, std::size_t b, bool wall) const {
     if (held_.empty()) return false;
-    const auto found = held_.find(contact_key(a, b, wall));
+    const auto found = held_.find(key(a, b, wall));
     return found != held_.end() && found->second == stamps(a, b, wall);
   }
 
   /// The contact's push along the normal, N, as this step or the one before last had it; 0 where neither did.
   double known_push(std::size_t a, std::size_t b, bool wall) const {
-    const std::uint64_t contact = contact_key(a, b, wall);
+    const std::uint64_t contact = key(a, b, wall);
     if (const auto found = learned_.find(contact); found != learned_.end()) return found->second;
     const auto found = known_.find(contact);
     return found == known_.end() ? 0.0 : found->second;
   }
 
   void learn_push(std::size_t a, std::size_t b, bool wall, double push_N) {
-    learned_[contact_key(a, b, wall)] = push_N;
+    learned_[key(a, b, wall)] = push_N;
   }
 
  private:
+  /// By the balls' numbers: between two steps balls may change their places.
+  std::uint64_t key(std::size_t a, std::size_t b, bool wall) const {
+    const auto& world = flights_.world();
+    return contact_key(world.number_of(a), wall ? b : world.number_of(b), wall);
+  }
+
   using Stamps = std::pair<std::uint32_t, std::uint32_t>;
 
   Stamps stamps(std::size_t a, std::size_t b, bool wall) const {

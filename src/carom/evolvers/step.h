@@ -124,7 +124,7 @@ class StepEvolver final : public Simulation {
 
   void look_around() {
     near_.sort(world_);
-    near_.build(world_, planes_, [](std::size_t) { return 0.0; });
+    near_.build(world_, world_.position, planes_, [](std::size_t) { return 0.0; });
     fastest_ = largest_norm(world_.velocity);
   }
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <queue>
@@ -28,8 +27,8 @@ namespace carom {
 ///
 /// Flights are parabolas (flight.h), so without drag and Magnus force a step of any length is exact but for
 /// rounding; those make it second order. The result does not depend on the broad phase, bit for bit: what
-/// happens is carried out in the order of (time, first ball, kind, second ball or plane). How contact becomes
-/// rest stands in resting.h.
+/// happens is carried out in the order of (time, first ball, kind, second ball or plane), balls by their
+/// numbers in the scene. How contact becomes rest stands in resting.h.
 ///
 /// @tparam Traits  what the scene calls for, see traits.h: kDim, kAccelerates, Law, kSheets
 template <class Traits>
@@ -41,9 +40,9 @@ class ToiEvolver final : public Simulation {
   ToiEvolver(const Scenario& scene, Parts<kDim> parts)
       : law_(law_of<Law>(parts)),
         flights_(scene, std::move(parts.flight)),
-        neighbours_(flights_, std::move(parts.broad_phase)),
-        cluster_law_(std::move(parts.cluster_law)),
         planes_(planes_of<kDim>(scene.walls)),
+        neighbours_(flights_, std::move(parts.broad_phase), parts.skin, planes_),
+        cluster_law_(std::move(parts.cluster_law)),
         resting_(scene, flights_, neighbours_, planes_),
         barriers_(scene),
         surface_(scene.ball_contact),
@@ -109,14 +108,25 @@ class ToiEvolver final : public Simulation {
 
     bool with_plane() const { return kind == Kind::plane || kind == Kind::grip_of_plane; }
     typename Rest::Seed seed() const { return {a, b, with_plane()}; }
-    bool operator>(const Meeting& other) const {
-      return std::tie(time, a, kind, b) > std::tie(other.time, other.a, other.kind, other.b);
+  };
+
+  /// The order in which meetings are carried out, the last first.
+  struct Later {
+    const World<kDim>& world;
+
+    bool operator()(const Meeting& x, const Meeting& y) const {
+      return x.time != y.time ? x.time > y.time : rank(x) > rank(y);
+    }
+    std::tuple<std::uint32_t, Kind, std::uint32_t> rank(const Meeting& meeting) const {
+      const std::uint32_t b = meeting.with_plane() ? meeting.b : world.number_of(meeting.b);
+      return {world.number_of(meeting.a), meeting.kind, b};
     }
   };
 
   const World<kDim>& world() const { return flights_.world(); }
 
   void step(double step_s) {
+    neighbours_.sort();
     flights_.begin_step(step_s);
     resting_.begin_step();
     neighbours_.begin_step();
@@ -126,11 +136,33 @@ class ToiEvolver final : public Simulation {
   }
 
   void find_meetings() {
-    meetings_to_come_ = {};
-    neighbours_.find_pairs(pairs_);
-    for (const auto& [i, j] : pairs_) expect_pair(i, j);
-    if (planes_.empty()) return;
-    for (std::size_t i = 0; i < flights_.size(); ++i) expect_planes(i);
+    const std::span<const BallPair> pairs = neighbours_.pairs();
+    const double fall_m = flights_.step_s() * flights_.field_speed();
+    for_each_passing(
+        pairs.size(), [&](std::size_t k) { return come_near(pairs[k].first, pairs[k].second, fall_m); },
+        [&](std::size_t k) {
+          if (neighbours_.may_meet_in_step(pairs[k].first, pairs[k].second)) {
+            expect_pair(pairs[k].first, pairs[k].second);
+          }
+        });
+    for (const auto& [ball, plane] : neighbours_.besides()) {
+      const double reach_m = flights_.reach(ball).bound;
+      if (planes_[plane].gap(world().position[ball], reach_m) <= 0.0) expect_plane(ball, plane);
+    }
+  }
+
+  /// A cheap question that leaves few pairs to the exact one: may these touch in the step, both flying as
+  /// they do? With d and w their relative place and velocity, and a part of at most f = h² max|a| that fields
+  /// have in their approach, |d + w t| <= σ + f for some t in [0, h]; and
+  ///   |d + w t|² = d² + 2 t d·w + t² w² >= d² + 2 h min(0, d·w).
+  /// What is rounded is a few u of d² and of σ², for where 2 h |d·w| exceeds d² the answer is clear.
+  bool come_near(std::size_t a, std::size_t b, double fall_m) const {
+    const Place d = world().position[b] - world().position[a];
+    const Place w = world().velocity[b] - world().velocity[a];
+    const double sum = world().radius[a] + world().radius[b] + fall_m;
+    const double nearest =
+        (1.0 - kNearRounding) * d.squaredNorm() + 2.0 * flights_.step_s() * std::min(0.0, d.dot(w));
+    return !(nearest > (1.0 + kNearRounding) * (sum * sum));
   }
 
   void resolve_meetings() {
@@ -185,22 +217,20 @@ class ToiEvolver final : public Simulation {
     } else {
       wait = time_to_touch<kDim>(d, w, sigma, rounding);
     }
-    expect(now + wait, std::min(i, j), std::max(i, j), Kind::pair);
+    world().before(i, j) ? expect(now + wait, i, j, Kind::pair) : expect(now + wait, j, i, Kind::pair);
   }
 
-  void expect_planes(std::size_t ball) {
-    if (planes_.empty() || world().inverse_mass[ball] == 0.0) return;
+  void expect_plane(std::size_t ball, std::size_t number) {
+    if (world().inverse_mass[ball] == 0.0) return;
+    const Plane<kDim>& plane = planes_[number];
     const Motion<kDim> now = flights_.motion(ball);
-    const double rounding = velocity_rounding(now.v.norm() + flights_.field_speed());
-    for (std::size_t k = 0; k < planes_.size(); ++k) {
-      const Plane<kDim>& plane = planes_[k];
-      if constexpr (Traits::kSheets) {
-        if (!plane.faces(now.x)) continue;
-      }
-      const double wait = time_to_close(plane.gap(now.x, world().radius[ball]), plane.normal.dot(now.v),
-                                        plane.normal.dot(now.a), rounding, flights_.left_s(ball));
-      expect(flights_.clock(ball) + wait, ball, k, Kind::plane);
+    if constexpr (Traits::kSheets) {
+      if (!plane.faces(now.x)) return;
     }
+    const double rounding = velocity_rounding(now.v.norm() + flights_.field_speed());
+    const double wait = time_to_close(plane.gap(now.x, world().radius[ball]), plane.normal.dot(now.v),
+                                      plane.normal.dot(now.a), rounding, flights_.left_s(ball));
+    expect(flights_.clock(ball) + wait, ball, number, Kind::plane);
   }
 
   void expect(double time_s, std::size_t a, std::size_t b, Kind kind) {
@@ -213,7 +243,7 @@ class ToiEvolver final : public Simulation {
 
   void expect_all(std::size_t ball) {
     neighbours_.widen(ball);
-    expect_planes(ball);
+    for (std::size_t plane = 0; plane < planes_.size(); ++plane) expect_plane(ball, plane);
     neighbours_.find_near(ball, near_);
     for (const std::uint32_t other : near_) expect_pair(ball, other);
   }
@@ -336,13 +366,16 @@ class ToiEvolver final : public Simulation {
     expect_all_of(resting_.members());
   }
 
+  /// Of squares of distances, see come_near().
+  static constexpr double kNearRounding = 16.0 * kEpsilon;
+
   static constexpr std::uint32_t kEndless = std::numeric_limits<std::uint32_t>::max();
 
   [[no_unique_address]] Law law_;
   Balls flights_;
+  std::vector<Plane<kDim>> planes_;
   Neighbours<kDim, Balls> neighbours_;
   std::unique_ptr<ClusterLaw<kDim>> cluster_law_;
-  std::vector<Plane<kDim>> planes_;
   Rest resting_;
   Barriers<kDim> barriers_;
   Contact surface_;
@@ -350,10 +383,9 @@ class ToiEvolver final : public Simulation {
   std::uint32_t most_flights_;
   std::uint32_t most_wall_flights_;
 
-  std::vector<BallPair> pairs_;
   std::vector<std::uint32_t> near_;
   std::vector<ClosedContact<kDim>> touching_;
-  std::priority_queue<Meeting, std::vector<Meeting>, std::greater<>> meetings_to_come_;
+  std::priority_queue<Meeting, std::vector<Meeting>, Later> meetings_to_come_{Later{flights_.world()}};
 };
 
 }  // namespace carom
