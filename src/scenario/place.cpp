@@ -33,11 +33,18 @@ int patience(std::size_t balls) {
 /// away.
 constexpr int kStirAll = 4;
 
+/// Where a ball is, the radius it has reached, and the next ball in its cell: what a search looks at lies
+/// together.
+struct Placed {
+  Vec3 position;
+  double size = 0.0;
+  std::uint32_t next = 0;
+};
+
 /// Balls in square cells of the box, as linked lists, so that a moved ball changes its cell in O(1).
 class Cells {
  public:
-  Cells(const Box& box, int dimension, double width, std::size_t balls)
-      : origin_(box.min), next_(balls, kEnd) {
+  Cells(const Box& box, int dimension, double width) : origin_(box.min) {
     for (int axis = 0; axis < dimension; ++axis) {
       const double extent = box.max[axis] - box.min[axis];
       // Cells no narrower than asked, and not many more of them than balls.
@@ -49,21 +56,22 @@ class Cells {
     heads_.assign(static_cast<std::size_t>(counts_[0] * counts_[1] * counts_[2]), kEnd);
   }
 
-  void insert(std::size_t ball, const Vec3& at) {
-    std::size_t& head = heads_[index(cell(at))];
-    next_[ball] = head;
-    head = ball;
+  void insert(std::size_t ball, std::vector<Placed>& balls) {
+    std::uint32_t& head = heads_[index(cell(balls[ball].position))];
+    balls[ball].next = head;
+    head = static_cast<std::uint32_t>(ball);
   }
 
-  void remove(std::size_t ball, const Vec3& at) {
-    std::size_t* link = &heads_[index(cell(at))];
-    while (*link != ball) link = &next_[*link];
-    *link = next_[ball];
+  void remove(std::size_t ball, std::vector<Placed>& balls) {
+    std::uint32_t* link = &heads_[index(cell(balls[ball].position))];
+    while (*link != ball) link = &balls[*link].next;
+    *link = balls[ball].next;
   }
 
-  /// Calls visit(ball) for every ball in the cell of `at` and the cells around it.
+  /// Calls visit(ball) for every ball in the cell of `at` and the cells around it, for as long as it returns
+  /// true.
   template <class Visit>
-  void around(const Vec3& at, Visit&& visit) const {
+  void around(const Vec3& at, const std::vector<Placed>& balls, Visit&& visit) const {
     const Cell centre = cell(at);
     Cell low;
     Cell high;
@@ -73,8 +81,11 @@ class Cells {
     }
     for (std::int64_t z = low[2]; z <= high[2]; ++z) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        const std::uint32_t* const row = &heads_[index({0, y, z})];
         for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-          for (std::size_t ball = heads_[index({x, y, z})]; ball != kEnd; ball = next_[ball]) visit(ball);
+          for (std::uint32_t ball = row[x]; ball != kEnd; ball = balls[ball].next) {
+            if (!visit(ball)) return;
+          }
         }
       }
     }
@@ -82,12 +93,13 @@ class Cells {
 
  private:
   using Cell = std::array<std::int64_t, 3>;
-  static constexpr std::size_t kEnd = static_cast<std::size_t>(-1);
+  static constexpr std::uint32_t kEnd = static_cast<std::uint32_t>(-1);
 
   Cell cell(const Vec3& at) const {
     Cell cell{};
     for (int axis = 0; axis < 3; ++axis) {
-      const double place = std::floor((at[axis] - origin_[axis]) * inverse_width_[axis]);
+      // A negative place, which the conversion would round up, is held to 0 like the others.
+      const double place = (at[axis] - origin_[axis]) * inverse_width_[axis];
       const auto last = static_cast<double>(counts_[static_cast<std::size_t>(axis)] - 1);
       cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(place, 0.0, last));
     }
@@ -101,8 +113,7 @@ class Cells {
   Vec3 origin_;
   Vec3 inverse_width_ = Vec3::Zero();
   std::array<std::int64_t, 3> counts_{1, 1, 1};
-  std::vector<std::size_t> heads_;
-  std::vector<std::size_t> next_;
+  std::vector<std::uint32_t> heads_;
 };
 
 double largest_radius(const std::vector<double>& radii, const Scenario& scene) {
@@ -118,17 +129,13 @@ class Placement {
         random_(random),
         count_(radii.size()),
         full_(radii),
-        cells_(*scene.box, scene.dimension, 2.0 * (1.0 + kClearance) * largest_radius(radii, scene),
-               radii.size() + scene.balls.size()) {
+        cells_(*scene.box, scene.dimension, 2.0 * (1.0 + kClearance) * largest_radius(radii, scene)) {
     for (double& radius : full_) radius *= 1.0 + kClearance;
-    size_.assign(count_, 0.0);
-    for (std::size_t i = 0; i < count_; ++i) position_.push_back(anywhere());
-    for (const Ball& ball : scene.balls) {
-      position_.push_back(ball.position);
-      size_.push_back(ball.radius);
-    }
-    for (std::size_t i = 0; i < position_.size(); ++i) cells_.insert(i, position_[i]);
-    stirred_.assign(position_.size(), 0);
+    balls_.reserve(count_ + scene.balls.size());
+    for (std::size_t i = 0; i < count_; ++i) balls_.push_back({anywhere()});
+    for (const Ball& ball : scene.balls) balls_.push_back({ball.position, ball.radius});
+    for (std::size_t i = 0; i < balls_.size(); ++i) cells_.insert(i, balls_);
+    stirred_.assign(balls_.size(), 0);
   }
 
   std::vector<Vec3> run() {
@@ -142,8 +149,10 @@ class Placement {
       if (now > grown) waited = 0;
       grown = now;
     }
-    position_.resize(count_);
-    return std::move(position_);
+    std::vector<Vec3> positions;
+    positions.reserve(count_);
+    for (std::size_t i = 0; i < count_; ++i) positions.push_back(balls_[i].position);
+    return positions;
   }
 
  private:
@@ -154,13 +163,16 @@ class Placement {
     std::size_t grown = 0;
     ++sweeps_;
     for (std::size_t i = 0; i < count_; ++i) {
-      const bool growing = size_[i] < full_[i];
+      const bool growing = balls_[i].size < full_[i];
       if (growing || stirred_[i] == sweeps_ || sweeps_ % kStirAll == 0)
-        try_at(i, position_[i] + nudge(kStride * full_[i]));
+        try_at(i, balls_[i].position + nudge(kStride * full_[i]));
       if (growing) try_at(i, anywhere());
-      if (growing) try_at(i, position_[i]);
-      if (size_[i] < full_[i]) {
-        cells_.around(position_[i], [this](std::size_t near) { stirred_[near] = sweeps_ + 1; });
+      if (growing) try_at(i, balls_[i].position);
+      if (balls_[i].size < full_[i]) {
+        cells_.around(balls_[i].position, balls_, [this](std::size_t near) {
+          stirred_[near] = sweeps_ + 1;
+          return true;
+        });
       } else {
         ++grown;
       }
@@ -170,22 +182,32 @@ class Placement {
 
   void try_at(std::size_t ball, const Vec3& at) {
     const double room = room_at(at, ball);
-    if (room < size_[ball] || room <= 0.0) return;
-    cells_.remove(ball, position_[ball]);
-    position_[ball] = at;
-    cells_.insert(ball, at);
-    size_[ball] = std::min(room, full_[ball]);
+    if (!enough(room, ball)) return;
+    cells_.remove(ball, balls_);
+    balls_[ball].position = at;
+    balls_[ball].size = std::min(room, full_[ball]);
+    cells_.insert(ball, balls_);
   }
 
-  /// The largest radius, up to about the ball's full one, that a ball at this place may have.
+  /// Whether a ball can be moved to where it has this much room.
+  bool enough(double room, std::size_t ball) const { return room >= balls_[ball].size && room > 0.0; }
+
+  /// The largest radius, up to about the ball's full one, that a ball at this place may have; where that is
+  /// not enough, anything else that is not.
   double room_at(const Vec3& at, std::size_t ball) const {
     double room = full_[ball];
     for (const Wall& wall : scene_.walls) room = std::min(room, wall.normal.dot(at) - wall.offset);
     for (const Slab& slab : scene_.slabs) room = std::min(room, room_beside(slab, at));
     for (const Barrier& barrier : scene_.barriers) room = std::min(room, room_beside(barrier, at));
-    if (room < size_[ball]) return room;
-    cells_.around(at, [&](std::size_t other) {
-      if (other != ball) room = std::min(room, (at - position_[other]).norm() - size_[other]);
+    if (!enough(room, ball)) return room;
+    cells_.around(at, balls_, [&](std::size_t other) {
+      if (other == ball) return true;
+      const double distance2 = (at - balls_[other].position).squaredNorm();
+      const double reach = room + balls_[other].size;
+      // A root for those alone that are near, with more to spare than it rounds.
+      if (distance2 > reach * reach * (1.0 + 1e-12)) return true;
+      room = std::min(room, std::sqrt(distance2) - balls_[other].size);
+      return enough(room, ball);
     });
     return room;
   }
@@ -213,8 +235,7 @@ class Placement {
   Random& random_;
   std::size_t count_;         ///< balls to place; behind them stand those that are there already
   std::vector<double> full_;  ///< the radius each is to reach
-  std::vector<double> size_;  ///< the radius each has reached
-  std::vector<Vec3> position_;
+  std::vector<Placed> balls_;
   std::vector<int> stirred_;  ///< the sweep in which a ball is to be moved, being near one that grows
   int sweeps_ = 0;
   Cells cells_;
