@@ -22,6 +22,7 @@
 #include "report/summary.h"
 #include "report/table.h"
 #include "report/words.h"
+#include "study/study_json.h"
 
 namespace carom {
 
@@ -76,7 +77,13 @@ void write_baseline(const Options& options, const std::optional<Baseline>& read,
              baseline_json(merged(read.value_or(Baseline()), baseline_of(results))));
 }
 
-void write_outputs(const Options& options, const Results& results) {
+/// The study that the page shall show; read before anything is run, like a baseline.
+std::optional<Study> read_study(const Options& options) {
+  if (options.study_file.empty()) return std::nullopt;
+  return parse_study(read_file(options.study_file), options.study_file);
+}
+
+void write_outputs(const Options& options, const Results& results, const std::optional<Study>& study) {
   if (!options.json_file.empty()) write_file(options.json_file, results_json(results, options.all_balls));
   if (!options.junit_file.empty()) write_file(options.junit_file, results_junit(results));
   if (!options.summary_file.empty()) write_file(options.summary_file, results_summary(results));
@@ -91,7 +98,7 @@ void write_outputs(const Options& options, const Results& results) {
   }
   if (!options.report_folder.empty()) {
     const fs::path page = fs::path(options.report_folder) / "index.html";
-    write_file(page, render_page(results, web_folder(), viewer_folder()));
+    write_file(page, render_page(results, web_folder(), viewer_folder(), study ? &*study : nullptr));
     if (!options.quiet) fmt::print("The page is {}\n", page.string());
   }
 }
@@ -102,6 +109,7 @@ ExitCode compare_command(const Options& options) {
   const EngineCatalog catalog(engine_folder(), options.engines_from);
   const std::vector<ScenarioPtr> scenes = load_scenes(options, catalog);
   const std::optional<Baseline> baseline = read_baseline(options);
+  const std::optional<Study> study = read_study(options);
   const ProcessLimits limits{options.timeout_s, options.memory_mib};
 
   Results results;
@@ -135,7 +143,7 @@ ExitCode compare_command(const Options& options) {
   } else {
     for (const std::string& line : baseline_lines(results)) fmt::print("baseline: {}\n", line);
   }
-  write_outputs(options, results);
+  write_outputs(options, results, study);
   write_baseline(options, baseline, results);
   return results.holds() ? ExitCode::holds : ExitCode::violated;
 }

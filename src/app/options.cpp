@@ -162,9 +162,11 @@ Parsed parse_options(int argc, char** argv) {
   add_scene_options(*run, options);
   run->add_option("--csv", options.csv_folder, "write every trajectory as CSV below this folder")
       ->check(not_empty());
-  run->add_option("--report", options.report_folder, "write the page DIR/index.html")->check(not_empty());
+  CLI::Option* page =
+      run->add_option("--report", options.report_folder, "write the page DIR/index.html")->check(not_empty());
   run->add_option("--study", options.study_file, "show this study (carom study --json) on the page, too")
-      ->check(not_empty());
+      ->check(not_empty())
+      ->needs(page);
   add_common_options(*run, options);
 
   CLI::App* check = app.add_subcommand("check", "the CI gate: as run, and says which gate is violated");

@@ -12,6 +12,7 @@
 #include "carom/evolvers/list.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "report/page.h"
 #include "report/study_csv.h"
 #include "report/study_table.h"
 #include "study/growth.h"
@@ -143,12 +144,18 @@ ExitCode study_command(const Options& options) {
   Study study;
   study.version = CAROM_VERSION;
   study.machine = this_machine();
+  study.own = kOwn;
   study.limits = {options.study_timeout_s, options.memory_mib, options.repeats};
   const Study before = taken_up(study, options.resume_file);
   measure(scenes, engines, options, before, study);
 
-  if (!options.quiet) fmt::print("{}", study_table(study, kOwn));
+  if (!options.quiet) fmt::print("{}", study_table(study));
   if (!options.json_file.empty()) write_file(options.json_file, study_json(study));
+  if (!options.report_folder.empty()) {
+    const std::filesystem::path page = std::filesystem::path(options.report_folder) / "index.html";
+    write_file(page, render_study_page(study, web_folder()));
+    if (!options.quiet) fmt::print("The page is {}\n", page.string());
+  }
   if (!options.csv_file.empty()) write_file(options.csv_file, study_csv(study));
   return ExitCode::holds;
 }

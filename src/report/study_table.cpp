@@ -41,6 +41,12 @@ std::string failure_of(const StudyScene& scene, const Series& series) {
   return "its error is not known";
 }
 
+/// A factor in five letters.
+std::string price_words(double factor) {
+  if (factor >= 9999.5) return ">9999";
+  return fmt::format("{:.{}f}", factor, factor < 99.95 ? 1 : 0);
+}
+
 std::string series_row(const StudyScene& scene, const Series& series, const std::vector<Mark>& marks) {
   const std::vector<Mark> own = marks_of_series(marks, series);
   if (own.empty()) return wrapped("  " + words_of(series) + ": ", failure_of(scene, series));
@@ -53,7 +59,7 @@ std::string series_row(const StudyScene& scene, const Series& series, const std:
   std::string text = fmt::format("{:<{}}", name, kNameWidth);
   text += padded(words_of(order), 9);
   text += padded(fmt::format("{:.1e}", best->error), 9);
-  text += padded(price ? fmt::format("{:.1f}", *price) : "–", 6);
+  text += padded(price ? price_words(*price) : "–", 6);
   for (const double tolerance : kTolerances) {
     const std::optional<Mark> mark = cheapest(own, tolerance);
     text += padded(mark ? time_words(mark->cpu_s.median) : "–", kTimeWidth);
@@ -137,6 +143,7 @@ std::string growth_table(const Study& study) {
   }
   text += fmt::format("{:>8}\n", "x");
   for (const StudyGrowth& growth : study.growths) {
+    if (!was_timed(growth)) continue;
     text += fmt::format("  {:<22}", fmt::format("{}, {}D", growth.engine, growth.dimension));
     for (const GrowthPoint& point : growth.points) {
       const std::optional<double> ns = per_ball_and_step_ns(point);
@@ -150,9 +157,9 @@ std::string growth_table(const Study& study) {
 
 }  // namespace
 
-std::string study_table(const Study& study, const std::string& own) {
+std::string study_table(const Study& study) {
   std::string text;
-  for (const StudyScene& scene : study.scenes) text += scene_table(scene, own);
+  for (const StudyScene& scene : study.scenes) text += scene_table(scene, study.own);
   return text + overview_table(study) + growth_table(study);
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFloorsToTell = 2.0;
 constexpr double kTimesRounding = 4.0;
+constexpr double kSaturation = 0.1;
 constexpr std::size_t kFewestBallCounts = 3;
 
 std::optional<double> error_of(const StudyPoint& point, StudyMeasure measure) {
@@ -61,14 +62,25 @@ std::vector<ErrorAtStep> errors_of(const StudyScene& scene, const Series& series
   return errors;
 }
 
-/// Errors as large as the smallest ball, or as all the energy there is, have left what a step decides.
+/// What a step decides ends where errors are a tenth of all that happens: of the way that a ball goes, or of
+/// the energy that there is.
 double saturation_of(const StudyScene& scene) {
-  return measure_of(scene) == StudyMeasure::position_m ? scene.smallest_radius_m : 1.0;
+  return kSaturation * (measure_of(scene) == StudyMeasure::position_m ? scene.reach_m : 1.0);
 }
 
-/// Whether one is neither better nor faster than the other, by more than can be told.
-bool is_matched(const Mark& peer, const Mark& own) {
-  return own.error <= peer.error && own.cpu_s.lower_quartile <= peer.cpu_s.upper_quartile;
+/// What rounding alone may make of the run with the fewest roundings: no run can count on being better.
+double least_rounding_of(const StudyScene& scene) {
+  if (measure_of(scene) == StudyMeasure::energy) return kEpsilon;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const StudyPoint& point : scene.points) {
+    if (point.rounding_m > 0.0) least_m = std::min(least_m, point.rounding_m);
+  }
+  return std::isfinite(least_m) ? least_m : floor_of(scene);
+}
+
+/// Whether the peer is neither better nor faster, by more than can be told.
+bool is_matched(const Mark& peer, const Mark& own, double rounding) {
+  return own.error <= std::max(peer.error, rounding) && own.cpu_s.lower_quartile <= peer.cpu_s.upper_quartile;
 }
 
 }  // namespace
@@ -233,6 +245,11 @@ Cost cost_of(const StudyScene& scene, const StudyPoint& point) {
   return cost;
 }
 
+bool was_timed(const StudyGrowth& growth) {
+  return std::any_of(growth.points.begin(), growth.points.end(),
+                     [](const GrowthPoint& point) { return !point.cpu_s.empty(); });
+}
+
 std::optional<double> per_ball_and_step_ns(const GrowthPoint& point) {
   if (point.status != RunStatus::ok || point.cpu_s.empty()) return std::nullopt;
   return 1e9 * spread_of(point.cpu_s).median /
@@ -244,11 +261,12 @@ std::vector<Lead> leads_over(const StudyScene& scene, const std::string& family)
   const std::vector<Mark> own = marks_of_family(scene, marks, family);
   std::vector<Lead> leads;
   if (own.empty()) return leads;
+  const double rounding = least_rounding_of(scene);
   for (const std::string& peer : families_of(scene)) {
     if (peer == family) continue;
     for (const Mark& mark : front_of(marks_of_family(scene, marks, peer))) {
-      const bool matched =
-          std::any_of(own.begin(), own.end(), [&](const Mark& each) { return is_matched(mark, each); });
+      const bool matched = std::any_of(own.begin(), own.end(),
+                                       [&](const Mark& each) { return is_matched(mark, each, rounding); });
       if (matched) continue;
       leads.push_back({peer, mark, cheapest(own, mark.error), best_within(own, mark.cpu_s.upper_quartile)});
     }

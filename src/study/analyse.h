@@ -79,7 +79,7 @@ struct Order {
   enum class Kind {
     fitted,
     rounding,  ///< every error is within what rounding may come to: there is nothing to fit
-    too_few,   ///< fewer than kFewestToFit errors are neither at the floor nor as large as a ball
+    too_few,   ///< fewer than kFewestToFit errors are neither at the floor nor as large as the scene
   };
   Kind kind = Kind::too_few;
   double order = 0.0;      ///< p in error ~ stepᵖ by least squares; below 0: a shorter step makes it worse
@@ -120,6 +120,9 @@ struct Cost {
 
 /// @pre the point was timed
 Cost cost_of(const StudyScene& scene, const StudyPoint& point);
+
+/// Whether any number of balls was timed.
+bool was_timed(const StudyGrowth& growth);
 
 /// Of a gas that was timed; an engine without steps is held against those that have.
 std::optional<double> per_ball_and_step_ns(const GrowthPoint& point);

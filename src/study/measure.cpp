@@ -66,6 +66,7 @@ class SceneStudy {
     into_.no_truth = truth_.reason;
     into_.uncertainty_m = truth_.uncertainty_m;
     into_.horizon_s = truth_.horizon_s;
+    into_.reach_m = truth_.known() ? reach_of_truth_m() : 0.0;
   }
 
   void plan(const std::vector<EngineChoice>& engines) {
@@ -115,6 +116,19 @@ class SceneStudy {
   }
 
  private:
+  double reach_of_truth_m() const {
+    double reach_m = 0.0;
+    const Trajectory& trajectory = truth_.trajectory;
+    for (std::size_t k = 0; k < trajectory.frames(); ++k) {
+      if (trajectory.time(k) > truth_.horizon_s.value_or(scene_->duration_s)) break;
+      for (std::size_t i = 0; i < trajectory.balls(); ++i) {
+        reach_m =
+            std::max(reach_m, (trajectory.frame(k)[i].position - trajectory.frame(0)[i].position).norm());
+      }
+    }
+    return reach_m;
+  }
+
   /// Of the same engine and setting at the last coarser step that was run.
   const StudyPoint* coarser(std::size_t index) const {
     const StudyPoint& point = into_.points[index];

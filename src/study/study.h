@@ -63,6 +63,7 @@ struct StudyScene {
   double duration_s = 0.0;
   std::int64_t frames = 1;
   double smallest_radius_m = 0.0;
+  double reach_m = 0.0;              ///< the farthest that the truth knows a ball from where it started
   std::string truth = "none";        ///< its kind
   std::string no_truth;              ///< why there is none
   double uncertainty_m = 0.0;        ///< of the truth
@@ -99,6 +100,7 @@ struct StudyLimits {
 struct Study {
   std::string version;  ///< of Carom
   Machine machine;
+  std::string own;  ///< the family of the engine under test, whose front is held against those of its peers
   StudyLimits limits;
   std::vector<StudyScene> scenes;
   std::vector<StudyGrowth> growths;

@@ -119,6 +119,7 @@ Json json_of(const StudyScene& scene) {
                {"duration", scene.duration_s},
                {"frames", scene.frames},
                {"smallest_radius", scene.smallest_radius_m},
+               {"reach", scene.reach_m},
                {"truth",
                 {{"kind", scene.truth},
                  {"reason", scene.no_truth},
@@ -142,6 +143,7 @@ StudyScene scene_from(const Json& json) {
   scene.duration_s = json.at("duration");
   scene.frames = json.at("frames");
   scene.smallest_radius_m = json.at("smallest_radius");
+  scene.reach_m = json.at("reach");
   const Json& truth = json.at("truth");
   scene.truth = truth.at("kind");
   scene.no_truth = truth.at("reason");
@@ -183,6 +185,7 @@ Study study_from(const Json& json) {
   const Json& machine = json.at("machine");
   study.machine = {machine.at("cpu"), machine.at("cores"), machine.at("compiler"), machine.at("build"),
                    machine.at("flags")};
+  study.own = json.at("under_test");
   const Json& limits = json.at("limits");
   study.limits = {limits.at("timeout"), limits.at("memory"), limits.at("repeats")};
   for (const Json& scene : json.at("scenes")) study.scenes.push_back(scene_from(scene));
@@ -202,6 +205,7 @@ std::string study_json(const Study& study) {
                  {"compiler", machine.compiler},
                  {"build", machine.build},
                  {"flags", machine.flags}}},
+               {"under_test", study.own},
                {"limits",
                 {{"timeout", study.limits.timeout_s},
                  {"memory", study.limits.memory_mib},

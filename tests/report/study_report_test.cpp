@@ -10,52 +10,13 @@
 #include "report/study_table.h"
 #include "report/study_words.h"
 #include "study/analyse.h"
+#include "tests/report/studies.h"
 
 namespace carom::test {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-StudyPoint point(const std::string& engine, const std::string& setting, std::int64_t steps, double error_m,
-                 double cpu_s) {
-  StudyPoint result;
-  result.engine = engine;
-  result.setting = setting;
-  result.steps_per_frame = steps;
-  result.step_s = 0.1 / static_cast<double>(steps);
-  result.status = RunStatus::ok;
-  result.errors.position_m = error_m;
-  result.steps = 10 * steps;
-  result.impacts = 3;
-  result.cpu_s = {cpu_s, cpu_s, cpu_s};
-  return result;
-}
-
-Study some_study() {
-  Study study;
-  StudyScene scene;
-  scene.id = "impact/some";
-  scene.title = "Some impact";
-  scene.balls = 2;
-  scene.truth = "exact";
-  scene.uncertainty_m = 1e-15;
-  scene.smallest_radius_m = 0.1;
-  scene.engines = {{"carom:event", false, true, std::nullopt}, {"peer", true, true, 1}};
-  scene.points.push_back(point("carom:event", "", 1, 0.0, 2e-6));
-  for (const std::int64_t steps : {1, 10, 100}) {
-    scene.points.push_back(
-        point("peer", "", steps, 1e-3 / static_cast<double>(steps), 1e-6 * static_cast<double>(steps)));
-  }
-  StudyPoint failed = point("peer", "velocity_iterations = 1", 1, 0.0, 0.0);
-  failed.status = RunStatus::crashed;
-  failed.reason = "ended by a \"signal\", early";
-  failed.errors = {};
-  failed.cpu_s.clear();
-  scene.points.push_back(failed);
-  study.scenes.push_back(scene);
-  return study;
-}
 
 /// The fields of each row, as RFC 4180 has them.
 std::vector<std::vector<std::string>> read_csv(const std::string& text) {
@@ -105,7 +66,7 @@ TEST(StudyCsv, ReadsBack_ToWhatWasMeasured) {
 }
 
 TEST(StudyTable, FitsATerminal_AndSaysWhoIsAhead) {
-  const std::string table = study_table(some_study(), "carom");
+  const std::string table = study_table(some_study());
   std::istringstream in(table);
   for (std::string line; std::getline(in, line);) {
     const auto columns = std::count_if(line.begin(), line.end(), [](char byte) {
@@ -122,7 +83,7 @@ TEST(StudyTable, FitsATerminal_AndSaysWhoIsAhead) {
 TEST(StudyTable, SaysSo_WhereNobodyIsAhead) {
   Study study = some_study();
   study.scenes[0].points[0].cpu_s = {5e-7, 5e-7};
-  const std::string table = study_table(study, "carom");
+  const std::string table = study_table(study);
   EXPECT_THAT(table, HasSubstr("carom's front lies at or below every peer's"));
   EXPECT_THAT(table, Not(HasSubstr("ahead:")));
 }

@@ -31,6 +31,7 @@ StudyScene scene_of(std::vector<StudyPoint> points) {
   scene.truth = "exact";
   scene.uncertainty_m = 1e-14;
   scene.smallest_radius_m = 1.0;
+  scene.reach_m = 10.0;
   scene.balls = 2;
   scene.points = std::move(points);
   for (const StudyPoint& each : scene.points) {
@@ -176,6 +177,15 @@ TEST(Leads, AreNone_WhereQuartilesOverlap) {
   StudyScene scene = scene_of({point("own", 1, 1e-3, 2.0), point("peer", 1, 1e-3, 1.9)});
   EXPECT_EQ(leads_over(scene, "own").size(), 1U);
   scene.points[0].cpu_s = {1.8, 1.9, 2.0, 2.1, 2.2};
+  EXPECT_THAT(leads_over(scene, "own"), IsEmpty());
+}
+
+TEST(Leads, AreNone_WhereBothAreWithinRounding) {
+  StudyScene scene = scene_of({point("own", 1, 5e-13, 2.0), point("peer", 1, 1e-13, 2.0)});
+  EXPECT_EQ(leads_over(scene, "own").size(), 1U);
+  // Which run has the fewest roundings does not matter: what they come to in it nobody can do without.
+  scene.points[0].rounding_m = 1e-9;
+  scene.points[1].rounding_m = 6e-13;
   EXPECT_THAT(leads_over(scene, "own"), IsEmpty());
 }
 

@@ -15,6 +15,7 @@ using ::testing::HasSubstr;
 Study some_study() {
   Study study;
   study.version = "0.1.0";
+  study.own = "carom";
   study.machine = {"a \"CPU\"", 2, "GCC", "Release", "-O3"};
   study.limits = {0.7, 512.0, 3};
   StudyScene scene;
@@ -24,6 +25,7 @@ Study some_study() {
   scene.seed = 0xffffffffffffffffULL;
   scene.balls = 2;
   scene.smallest_radius_m = 0.1;
+  scene.reach_m = 0.7;
   scene.truth = "closed-form";
   scene.uncertainty_m = 1.0 / 3.0;
   scene.engines = {{"carom:event", false, true, std::nullopt}, {"box2d", true, true, 1}};

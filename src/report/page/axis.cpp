@@ -72,6 +72,12 @@ Axis Axis::log(double floor, double high) {
           static_cast<double>(std::max(top, bottom + 1))};
 }
 
+Axis Axis::powers(double low, double high) {
+  Axis axis = log(low, high);
+  axis.names_zero_ = false;
+  return axis;
+}
+
 Axis Axis::symlog(double threshold, double low, double high) {
   Axis axis(Scale::symlog, std::pow(10.0, exponent_below(threshold)), 0.0, 0.0);
   const auto reach = [&axis](double end) {
@@ -104,6 +110,11 @@ std::vector<Tick> Axis::ticks(int at_most) const {
   if (scale_ == Scale::linear) return linear_ticks(low_, high_, at_most);
   const int stride = decade_stride(high_ - low_, at_most);
   const int floor = exponent_below(threshold_);
+  if (!names_zero_) {
+    std::vector<Tick> powers;
+    append_decades(powers, floor, static_cast<int>(high_), stride, 1.0);
+    return powers;
+  }
   // Zero is labelled too: at the floor of a logarithmic axis, which stands for it, or in the middle. A label
   // nearer to it than about half a stride would touch it.
   const int first = floor + std::max(1, (stride + 1) / 2);

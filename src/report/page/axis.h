@@ -24,6 +24,10 @@ class Axis {
   /// @pre floor > 0
   static Axis log(double floor, double high);
 
+  /// Powers of ten from at most `low` to at least `high`, for values that are never zero.
+  /// @pre 0 < low <= high
+  static Axis powers(double low, double high);
+
   /// Powers of ten to both sides of a zero: u = sign(x) log10(1 + |x|/threshold), reaching at least from low
   /// to high. @pre threshold > 0, low <= 0 <= high
   static Axis symlog(double threshold, double low, double high);
@@ -48,6 +52,7 @@ class Axis {
   double threshold_;
   double low_;
   double high_;
+  bool names_zero_ = true;  // a logarithmic axis: its floor stands for zero
 };
 
 }  // namespace carom::page

@@ -13,6 +13,7 @@
 #include "report/page/overview.h"
 #include "report/page/scene_section.h"
 #include "report/page/speed.h"
+#include "report/page/study.h"
 #include "report/page/style.h"
 #include "report/page/survival.h"
 #include "report/page/symmetry.h"
@@ -29,14 +30,15 @@ bool has_viewer(const std::filesystem::path& viewer) {
 }
 
 /// Style and script stand before the body and are not part of its tree: their text must not be escaped.
-std::string head(const std::filesystem::path& web, const std::filesystem::path& viewer) {
+std::string head(const std::string& title, const std::filesystem::path& web,
+                 const std::filesystem::path& viewer) {
   const std::string viewer_style = has_viewer(viewer) ? read_file(viewer / "report.css") : "";
   const std::string viewer_script = has_viewer(viewer) ? read_file(viewer / "report.js") : "";
   return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-         "<title>Carom report</title>\n<style>\n" +
-         read_file(web / "page.css") + viewer_style + "</style>\n<script>\n" + read_file(web / "page.js") +
-         viewer_script + "</script>\n</head>\n";
+         "<title>" +
+         title + "</title>\n<style>\n" + read_file(web / "page.css") + viewer_style + "</style>\n<script>\n" +
+         read_file(web / "page.js") + viewer_script + "</script>\n</head>\n";
 }
 
 /// Counted by tests/benchmarks/run, and not there where that never ran.
@@ -63,7 +65,7 @@ std::filesystem::path catches_file(const std::filesystem::path& web) {
   return web.parent_path() / "measured/gates.json";
 }
 
-void add_navigation(Node body, const Results& results, const std::filesystem::path& web) {
+void add_navigation(Node body, const Results& results, const std::filesystem::path& web, bool has_study) {
   add(body, "a", {{"class", "skip"}, {"href", "#overview"}}, "Skip to the results");
   Node bar = add(body, "nav", {{"aria-label", "Parts of this page"}});
   add(bar, "a", {{"href", "#overview"}}, "All scenes");
@@ -73,6 +75,7 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
   if (has_symmetries(results)) add(bar, "a", {{"href", "#symmetry"}}, "Symmetries");
   if (results.textbook) add(bar, "a", {{"href", "#textbook"}}, "The course program");
   if (!results.laws.empty()) add(bar, "a", {{"href", "#laws"}}, "Laws of impact");
+  if (has_study) add(bar, "a", {{"href", "#study"}}, "What accuracy costs");
   add(bar, "a", {{"href", "#guide"}}, "How to read this page");
   add(bar, "a", {{"href", "#engines"}}, "The engines");
   if (std::filesystem::exists(published_file(web)))
@@ -88,18 +91,19 @@ void add_navigation(Node body, const Results& results, const std::filesystem::pa
 }  // namespace
 
 std::string render_page(const Results& results, const std::filesystem::path& web,
-                        const std::filesystem::path& viewer) {
+                        const std::filesystem::path& viewer, const Study* study) {
   const bool plays = has_viewer(viewer);
   const Legend legend(results.scenes);
   pugi::xml_document document;
   Node body = document.append_child("body");
-  add_navigation(body, results, web);
+  add_navigation(body, results, web, study != nullptr);
   Node main = add(body, "main");
   add_overview(main, results, legend);
   add_accuracy(main, results, legend);
   add_survival(main, results, legend);
   add_coefficients(main, results.coefficients, legend);
   add_symmetries(main, results, legend);
+  if (study != nullptr) add_study(main, *study, read_file(web / "study.md"));
   for (const SceneComparison& scene : results.scenes) add_scene(main, scene, legend, plays);
   add_textbook(main, results.textbook);
   add_laws(main, results.laws);
@@ -111,7 +115,17 @@ std::string render_page(const Results& results, const std::filesystem::path& web
   add_speed(main, speed_file(web));
   add_costs(main, costs_file(web));
   add_footer(body, results);
-  return head(web, viewer) + markup(body) + "\n</html>\n";
+  return head("Carom report", web, viewer) + markup(body) + "\n</html>\n";
+}
+
+std::string render_study_page(const Study& study, const std::filesystem::path& web) {
+  pugi::xml_document document;
+  Node body = document.append_child("body");
+  add(body, "nav", {{"aria-label", "Parts of this page"}});
+  Node main = add(body, "main");
+  add(add(main, "header", {{"class", "top"}}), "h1", {}, "Carom study");
+  add_study(main, study, read_file(web / "study.md"));
+  return head("Carom study", web, {}) + markup(body) + "\n</html>\n";
 }
 
 }  // namespace carom

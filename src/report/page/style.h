@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "comparison/results.h"
@@ -24,6 +25,8 @@ struct LineStyle {
 class Legend {
  public:
   explicit Legend(const std::vector<SceneComparison>& scenes);
+  /// @pre no label is there twice
+  explicit Legend(std::vector<std::string> labels) : labels_(std::move(labels)) {}
 
   const std::vector<std::string>& labels() const { return labels_; }
   LineStyle style(const std::string& label) const;
