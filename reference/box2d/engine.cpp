@@ -76,7 +76,7 @@ class Box2dEngine final : public Engine, public Tunable {
   ClaimedOrder claimed_order(const Scenario& /*scene*/) const override { return 1; }
 
   std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
-    return reference::iteration_tunings(setup_for(scene, profile).velocity_iterations);
+    return reference::iteration_tunings("velocity_iterations", setup_for(scene, profile).velocity_iterations);
   }
 
   std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,

@@ -96,7 +96,7 @@ class BulletEngine final : public Engine, public Tunable {
   }
 
   std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
-    return reference::iteration_tunings(setup_for(scene, profile).iterations);
+    return reference::iteration_tunings("velocity_iterations", setup_for(scene, profile).iterations);
   }
 
   std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,

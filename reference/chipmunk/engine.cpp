@@ -1,4 +1,6 @@
+#include "engine/tuning.h"
 #include "reference/chipmunk/simulation.h"
+#include "reference/common/iterations.h"
 
 namespace carom::chipmunk {
 
@@ -7,7 +9,7 @@ namespace {
 static_assert(sizeof(cpFloat) == sizeof(double), "Debian's Chipmunk computes in double precision");
 
 /// Chipmunk 7: circles in the plane, in double precision, with a fixed step.
-class ChipmunkEngine final : public Engine {
+class ChipmunkEngine final : public Engine, public Tunable {
  public:
   EngineInfo info() const override {
     EngineInfo info;
@@ -56,6 +58,20 @@ class ChipmunkEngine final : public Engine {
     const Setup other = setup_for(reference::other_profile(profile));
     return std::make_unique<ChipmunkSimulation>(
         scenario, reference::switched(setup_for(profile), other, switched, kSwitches));
+  }
+
+  bool takes_steps(const Scenario& /*scene*/) const override { return true; }
+  ClaimedOrder claimed_order(const Scenario& /*scene*/) const override { return 1; }
+
+  std::vector<Tuning> tunings(const Scenario& /*scene*/, std::string_view profile) const override {
+    return reference::iteration_tunings("iterations", setup_for(profile).iterations);
+  }
+
+  std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,
+                                           const Tuned& tuned) const override {
+    Setup setup = setup_for(profile);
+    setup.iterations = reference::iterations_of(tuned);
+    return std::make_unique<ChipmunkSimulation>(scene, setup);
   }
 };
 

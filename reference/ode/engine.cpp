@@ -1,3 +1,5 @@
+#include "engine/tuning.h"
+#include "reference/common/iterations.h"
 #include "reference/ode/simulation.h"
 
 namespace carom::ode {
@@ -7,7 +9,7 @@ namespace {
 static_assert(sizeof(dReal) == sizeof(double), "Debian's ODE computes in double precision");
 
 /// The Open Dynamics Engine 0.16: spheres in space or in a plane, in double precision, with a fixed step.
-class OdeEngine final : public Engine {
+class OdeEngine final : public Engine, public Tunable {
  public:
   OdeEngine() { dInitODE2(0); }
   ~OdeEngine() override { dCloseODE(); }
@@ -57,6 +59,20 @@ class OdeEngine final : public Engine {
     const Setup other = setup_for(scenario, reference::other_profile(profile));
     return std::make_unique<OdeSimulation>(
         scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
+  }
+
+  bool takes_steps(const Scenario& /*scene*/) const override { return true; }
+  ClaimedOrder claimed_order(const Scenario& /*scene*/) const override { return 1; }
+
+  std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
+    return reference::iteration_tunings("iterations", setup_for(scene, profile).iterations);
+  }
+
+  std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,
+                                           const Tuned& tuned) const override {
+    Setup setup = setup_for(scene, profile);
+    setup.iterations = reference::iterations_of(tuned);
+    return std::make_unique<OdeSimulation>(scene, setup);
   }
 };
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "carom/compose.h"
+#include "carom/evolvers/list.h"
 #include "core/least_squares.h"
 #include "reference/closed_form/closed_form.h"
 #include "scenario/parse.h"
@@ -130,8 +131,9 @@ bool Convergence::is_rounding() const {
 }
 
 std::optional<int> claimed_order(const std::string& evolver, const Scenario& scene) {
-  if (evolver == "step") return 1;
-  if (evolver == "toi" && (scene.effects.drag || scene.effects.magnus)) return 2;
+  for (const Evolver& each : all_evolvers()) {
+    if (each.name == evolver && each.claimed_order != nullptr) return each.claimed_order(scene);
+  }
   return std::nullopt;
 }
 

@@ -29,10 +29,7 @@ struct Convergence {
   bool is_rounding() const;
 };
 
-/// The order that an evolver is built to have: `step` moves on and looks for impacts afterwards, so it is of
-/// the first; `toi` finds them where they are, and is exact where flight is a parabola. Drag and the Magnus
-/// force make of it what a step follows to the second order. `event` takes only scenes that it jumps along
-/// exactly. None: exact, but for rounding.
+/// The order that an evolver states in the list of evolvers. None: exact, but for rounding.
 std::optional<int> claimed_order(const std::string& evolver, const Scenario& scene);
 
 /// Every evolver in every scene that is measured, against the closed form.
