@@ -77,10 +77,10 @@ void add_scene_options(CLI::App& command, Options& options) {
   command.add_flag("--all-balls", options.all_balls, "list the final state of every ball in the JSON");
 }
 
-void add_common_options(CLI::App& command, Options& options, double& timeout_s) {
+void add_common_options(CLI::App& command, Options& options, double& timeout_s, const char* what_times_out) {
   command.add_option("-j", options.parallel, "runs at a time (default: one for each core)")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--timeout", timeout_s, "the limit of one run in s")
+  command.add_option("--timeout", timeout_s, what_times_out)
       ->capture_default_str()
       ->check(number_from(1e-3, "a number of seconds >= 0.001"));
   command.add_option("--memory", options.memory_mib, "the memory limit of one run in MiB")
@@ -92,7 +92,7 @@ void add_common_options(CLI::App& command, Options& options, double& timeout_s) 
 }
 
 void add_common_options(CLI::App& command, Options& options) {
-  add_common_options(command, options, options.timeout_s);
+  add_common_options(command, options, options.timeout_s, "the limit of one run in s");
 }
 
 void add_study(CLI::App& app, Options& options) {
@@ -119,7 +119,8 @@ void add_study(CLI::App& app, Options& options) {
   study->add_option("--repeats", options.repeats, "timed runs of each setting")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  add_common_options(*study, options, options.study_timeout_s);
+  add_common_options(*study, options, options.study_timeout_s,
+                     "the CPU time in s beyond which a run that is foreseen to take longer is left out");
 }
 
 /// CLI11 prints help through exceptions as well; the code tells them apart.

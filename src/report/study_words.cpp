@@ -25,7 +25,7 @@ std::string words_of(const StudyScene& scene, const StudyPoint& point) {
 std::string words_of(const Order& order) {
   switch (order.kind) {
     case Order::Kind::fitted:
-      return fmt::format("{:.2f}", order.order);
+      return fmt::format("{}{:.2f}", order.r_squared < kStraight ? "~" : "", order.order);
     case Order::Kind::rounding:
       return "rounding";
     case Order::Kind::too_few:

@@ -16,7 +16,7 @@ std::string words_of(const Series& series);
 /// "box2d, velocity_iterations = 1, step 1.04e-3 s"; an engine without a step has none.
 std::string words_of(const StudyScene& scene, const StudyPoint& point);
 
-/// "1.02", "rounding", "too few"
+/// "1.02", "~0.7" where errors scatter too much for a line, "rounding", "–" where there are too few
 std::string words_of(const Order& order);
 
 /// "1", "exact", "–" where the engine states none

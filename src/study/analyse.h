@@ -87,7 +87,10 @@ struct Order {
   std::size_t used = 0;    ///< errors in the fit
 };
 
-inline constexpr std::size_t kFewestToFit = 3;
+inline constexpr std::size_t kFewestToFit = 4;
+/// A fit whose R² is below this is no straight line, and its slope a hint at most: when an impact comes
+/// within a step is chance, and scatters errors.
+inline constexpr double kStraight = 0.9;
 
 /// An error at a step.
 struct ErrorAtStep {

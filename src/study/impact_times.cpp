@@ -45,7 +45,7 @@ double turning_time_s(const BallState& before, double before_s, const BallState&
 }  // namespace
 
 std::optional<double> impact_time_error_s(const Scenario& scene, const Truth& truth, const Run& run) {
-  if (scene.effects.drag || scene.effects.magnus || scene.frames < 1) return std::nullopt;
+  if (scene.effects.drag || scene.effects.magnus || !scene.events.empty()) return std::nullopt;
   const std::vector<std::vector<double>> times = impacts_of_balls(scene, truth);
   const Vec3 gravity = scene.effects.gravity.value_or(Vec3::Zero());
   const double interval_s = scene.duration_s / static_cast<double>(scene.frames);

@@ -19,8 +19,9 @@ namespace carom {
 ///
 /// Told are the true impacts up to the horizon that are a ball's only ones from the frame before to the
 /// second one after, and that change its velocity by more than a thousandth of its speed. Nothing where there
-/// is none, where the truth does not tell its impacts or flight is no parabola (drag, Magnus), and where the
-/// run has missed one: the ball's velocity has not changed by half of what it should.
+/// is none, where the truth does not tell its impacts or flight is no parabola (drag, Magnus) or is
+/// interfered with, and where the run has missed one: the ball's velocity has not changed by half of what it
+/// should.
 std::optional<double> impact_time_error_s(const Scenario& scene, const Truth& truth, const Run& run);
 
 }  // namespace carom

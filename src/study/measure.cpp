@@ -19,6 +19,10 @@ namespace {
 /// A run of more than this gets kLongRepeats, its start and the resolution of the clock being nothing to it.
 constexpr double kLong_s = 0.1;
 constexpr int kLongRepeats = 3;
+/// A run of so many times its limit and a while is taken to hang. Not sooner: the limit is one of CPU time,
+/// and other programs may hold a run up.
+constexpr double kHangFactor = 10.0;
+constexpr double kHangWhile_s = 5.0;
 /// Runs at a time that keep their trajectories until they are measured.
 constexpr std::size_t kAtOnce = 16;
 
@@ -37,7 +41,8 @@ class SceneStudy {
   SceneStudy(ScenarioPtr scene, const StudyLimits& limits, int parallel, const StudyWatch& watch,
              StudyScene& into)
       : scene_(std::move(scene)),
-        limits_{limits.timeout_s, limits.memory_mib},
+        timeout_s_(limits.timeout_s),
+        limits_{kHangFactor * limits.timeout_s + kHangWhile_s, limits.memory_mib},
         repeats_(limits.repeats),
         parallel_(parallel),
         watch_(watch),
@@ -148,11 +153,11 @@ class SceneStudy {
         static_cast<double>(point.steps_per_frame) / static_cast<double>(before->steps_per_frame);
     const bool was_stopped = *before->status == RunStatus::timeout;
     const double foreseen_s = before->recorded_cpu_s * finer;
-    if (!was_stopped && foreseen_s <= limits_.wall_seconds) return false;
+    if (!was_stopped && foreseen_s <= timeout_s_) return false;
     point.status = RunStatus::timeout;
-    point.reason = was_stopped ? "a coarser step took longer than the limit already"
-                               : fmt::format("foreseen to take {:.2g} s, longer than {:g} s", foreseen_s,
-                                             limits_.wall_seconds);
+    point.reason = was_stopped
+                       ? "a coarser step hung already"
+                       : fmt::format("foreseen to take {:.2g} s, longer than {:g} s", foreseen_s, timeout_s_);
     watch_.done(point.engine);
     return true;
   }
@@ -216,9 +221,7 @@ class SceneStudy {
 
   void time_once(StudyPoint& point, const EngineChoice& choice) {
     const Scenario scene = with_steps(*scene_, point.steps_per_frame);
-    // It warms up, runs, and repeats what is short; the limit is that of the run.
-    const ProcessLimits limits{2.0 * limits_.wall_seconds, limits_.memory_mib};
-    const ProcessOutcome outcome = time_isolated(scene, choice, limits);
+    const ProcessOutcome outcome = time_isolated(scene, choice, limits_);
     if (outcome.end == ProcessEnd::finished) {
       point.cpu_s.push_back(timing_from(outcome.payload).cpu_s);
     } else {
@@ -229,6 +232,7 @@ class SceneStudy {
   }
 
   ScenarioPtr scene_;
+  double timeout_s_;
   ProcessLimits limits_;
   int repeats_;
   int parallel_;

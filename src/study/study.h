@@ -92,7 +92,7 @@ struct StudyGrowth {
 
 /// How runs are made.
 struct StudyLimits {
-  double timeout_s = 2.0;  ///< of one run; one that is foreseen to take longer is not started
+  double timeout_s = 2.0;  ///< CPU time of one run; one that is foreseen to take longer is not started
   double memory_mib = 4096.0;
   int repeats = 5;  ///< timed runs of each setting
 };

@@ -39,7 +39,7 @@ inline Study some_study() {
   scene.reach_m = 1.0;
   scene.engines = {{"carom:event", false, true, std::nullopt}, {"peer", true, true, 1}};
   scene.points.push_back(study_point("carom:event", "", 1, 0.0, 2e-6));
-  for (const std::int64_t steps : {1, 10, 100}) {
+  for (const std::int64_t steps : {1, 10, 100, 1000}) {
     const auto count = static_cast<double>(steps);
     scene.points.push_back(study_point("peer", "", steps, 1e-3 / count, 1e-6 * count));
   }

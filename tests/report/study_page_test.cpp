@@ -38,8 +38,8 @@ TEST(StudyChapter, HasADiagramWithEveryTimedRun_AndItsSetting) {
 TEST(StudyChapter, ShowsClaimAndFit_PriceAndFailures) {
   const std::string text = chapter_of(some_study());
   EXPECT_THAT(text, AllOf(HasSubstr(" peer</th><td class=\"number\">1</td><td class=\"number\">1.00</td>"
-                                    "<td class=\"number\">1.0000</td><td class=\"number\">3 of 3</td>"
-                                    "<td class=\"number\">1e-5</td><td class=\"number\">10</td>"),
+                                    "<td class=\"number\">1.0000</td><td class=\"number\">4 of 4</td>"
+                                    "<td class=\"number\">1e-6</td><td class=\"number\">10</td>"),
                           HasSubstr(" carom:event</th><td class=\"number\">exact</td>"),
                           HasSubstr("crashed: ended by a \"signal\", early")));
 }

@@ -114,10 +114,10 @@ TEST(Order, IsThatOfAPower_OfAnyExponent) {
 }
 
 TEST(Order, LeavesTheRoundOffFloorOut) {
-  // C h² with rounding R/h: they meet where h³ = R/C, so at h = 1/100; beyond, errors rise.
-  const Order fit = fit_order(errors_of_order(2.0, 1e-3, 1e-9), 1e-15, 1.0);
+  // C h² with rounding R/h: they meet where h³ = R/C, so at h = 1/200; beyond, errors rise.
+  const Order fit = fit_order(errors_of_order(2.0, 1e-3, 1.25e-10), 1e-15, 1.0);
   ASSERT_EQ(fit.kind, Order::Kind::fitted);
-  EXPECT_LT(fit.used, 6U);
+  EXPECT_LT(fit.used, 7U);
   // An error at four times the least is rounding by a quarter at most, which over the decade and a half that
   // is left turns the slope by ln(4/3)/ln(32) at most.
   EXPECT_NEAR(fit.order, 2.0, 0.083);
@@ -141,7 +141,7 @@ TEST(Order, IsRounding_WhereRoundingExplainsAll) {
 
 TEST(Order, IsNotFitted_ToTooFew) {
   std::vector<ErrorAtStep> errors = errors_of_order(1.0, 1e-3, 0.0);
-  errors.resize(2);
+  errors.resize(kFewestToFit - 1);
   EXPECT_EQ(fit_order(errors, 1e-15, 1.0).kind, Order::Kind::too_few);
   EXPECT_EQ(fit_order({}, 1e-15, 1.0).kind, Order::Kind::too_few);
 }

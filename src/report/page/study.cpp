@@ -48,7 +48,7 @@ void add_result(Node parent, const Study& study) {
   Node box = add(parent, "div", {{"class", behind.empty() ? "result pass" : "result fail"}});
   Node line = add(box, "p", {{"class", "headline"}});
   add(line, "span", {{"class", "mark"}, {"aria-hidden", "true"}}, behind.empty() ? "✓" : "✗");
-  say(line, fmt::format("{}'s front lies at or below every peer's in {} of {}.", study.own, held,
+  say(line, fmt::format("The front of {} lies at or below every peer's in {} of {}.", study.own, held,
                         count_of(taken_part, "scene")));
   if (behind.empty()) return;
   Node list = add(box, "ul", {{"class", "violations"}});
@@ -60,61 +60,68 @@ void add_result(Node parent, const Study& study) {
   }
 }
 
-/// The best of a column's values gets a mark of its own.
-void add_entry(Node row, const std::string& text, bool best) {
-  add(row, "td", {{"class", best ? "number holds" : "number"}}, text);
-}
+/// One side of a comparison: what all are held to, and what each family comes to; the least is marked.
+struct Side {
+  std::string held_to;
+  std::vector<std::optional<double>> values;  ///< of each family
+};
 
-void add_overview_row(Node body, const StudyScene& scene, const Comparison& comparison,
-                      const std::vector<std::string>& families) {
-  std::optional<double> least_error;
-  std::optional<double> least_cost_s;
-  for (const Comparison::Entry& entry : comparison.entries) {
-    if (entry.error_at_cost) least_error = std::min(*entry.error_at_cost, least_error.value_or(1e300));
-    if (entry.cost_at_error_s) least_cost_s = std::min(*entry.cost_at_error_s, least_cost_s.value_or(1e300));
+void add_side_row(Node body, const StudyScene& scene, const Side& side, std::string (*words)(double)) {
+  std::optional<double> least;
+  for (const std::optional<double>& value : side.values) {
+    if (value && (!least || *value < *least)) least = value;
   }
   Node row = add(body, "tr");
   add(add(row, "th", {{"scope", "row"}}), "a", {{"href", "#" + study_anchor(scene)}}, scene.id);
-  const auto entry_of = [&](const std::string& family) {
-    const auto found = std::find_if(comparison.entries.begin(), comparison.entries.end(),
-                                    [&](const Comparison::Entry& entry) { return entry.family == family; });
-    return found == comparison.entries.end() ? Comparison::Entry() : *found;
-  };
-  add_number(row, time_words(comparison.cost_s));
-  for (const std::string& family : families) {
-    const Comparison::Entry entry = entry_of(family);
-    add_entry(row, entry.error_at_cost ? number(*entry.error_at_cost) : "–",
-              entry.error_at_cost && entry.error_at_cost == least_error);
-  }
-  add_number(row, number(comparison.error) + " " + unit_of(scene));
-  for (const std::string& family : families) {
-    const Comparison::Entry entry = entry_of(family);
-    add_entry(row, entry.cost_at_error_s ? time_words(*entry.cost_at_error_s) : "–",
-              entry.cost_at_error_s && entry.cost_at_error_s == least_cost_s);
+  add_number(row, side.held_to);
+  for (const std::optional<double>& value : side.values) {
+    const bool best = value && value == least;
+    add(row, "td", {{"class", best ? "number holds" : "number"}}, value ? words(*value) : "–");
   }
 }
 
-void add_overview_table(Node parent, const Study& study) {
+std::vector<std::optional<double>> values_of(const Comparison& comparison,
+                                             const std::vector<std::string>& families,
+                                             std::optional<double> Comparison::Entry::*value) {
+  std::vector<std::optional<double>> values(families.size());
+  for (const Comparison::Entry& entry : comparison.entries) {
+    const auto place = std::find(families.begin(), families.end(), entry.family) - families.begin();
+    values[static_cast<std::size_t>(place)] = entry.*value;
+  }
+  return values;
+}
+
+void add_overview_tables(Node parent, const Study& study) {
   std::vector<std::string> families;
   for (const StudyScene& scene : study.scenes) {
     for (const std::string& family : families_of(scene)) append_new(families, family);
   }
-  std::vector<Heading> headings = {{"scene", ""}, {"errors within", "number"}};
-  for (const std::string& family : families) headings.push_back({family, "number"});
-  headings.push_back({"times for", "number"});
-  for (const std::string& family : families) headings.push_back({family, "number"});
-  Node body = add_table(parent, "measured", "Left: the error at equal cost. Right: the cost at equal error.",
-                        headings);
+  std::vector<Heading> errors = {{"scene", ""}, {"within", "number"}};
+  std::vector<Heading> costs = {{"scene", ""}, {"for an error of", "number"}};
+  for (const std::string& family : families) {
+    errors.push_back({family, "number"});
+    costs.push_back({family, "number"});
+  }
+  Node error_rows = add_table(parent, "measured", "The error at equal cost", errors);
+  Node cost_rows = add_table(parent, "measured", "The cost at equal error", costs);
   for (const StudyScene& scene : study.scenes) {
     const std::optional<Comparison> comparison = compare_families(scene);
-    if (comparison) add_overview_row(body, scene, *comparison, families);
+    if (!comparison) continue;
+    const Side at_cost{time_words(comparison->cost_s),
+                       values_of(*comparison, families, &Comparison::Entry::error_at_cost)};
+    const Side at_error{number(comparison->error) + " " + unit_of(scene),
+                        values_of(*comparison, families, &Comparison::Entry::cost_at_error_s)};
+    add_side_row(error_rows, scene, at_cost, [](double value) { return number(value); });
+    add_side_row(cost_rows, scene, at_error, [](double value) { return time_words(value); });
   }
   add(parent, "p", {{"class", "note"}},
       "Equal cost: the time of the fastest run of the engine whose fastest run is the slowest, so that each "
-      "has a "
-      "run within it. Equal error: the best of the engine whose best is the worst, so that each reaches it. "
-      "An "
-      "engine stands for all its variants and settings.");
+      "has "
+      "a run within it. Equal error: the best of the engine whose best is the worst, so that each reaches "
+      "it; in "
+      "m, or relative where there is no truth and errors are those of the energy. An engine stands for all "
+      "its "
+      "variants and settings.");
 }
 
 void add_growth_table(Node parent, const Study& study) {
@@ -212,7 +219,7 @@ void add_study(Node parent, const Study& study, const std::string& how_to_read) 
       "what "
       "else it can be tuned by.");
   add_result(section, study);
-  add_overview_table(section, study);
+  add_overview_tables(section, study);
   Node guide = add(section, "div", {{"class", "prose"}});
   add_markdown(guide, how_to_read, 1);
   for (const StudyScene& scene : study.scenes) add_study_scene(section, scene, study.own, legend);

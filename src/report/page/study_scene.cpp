@@ -34,9 +34,9 @@ void add_leads(Node parent, const StudyScene& scene, const std::string& own) {
   const std::vector<Lead> leads = leads_over(scene, own);
   if (leads.empty()) {
     add(parent, "p", {{"class", "about"}},
-        fmt::format(
-            "{}'s front lies at or below every peer's: no engine gives a smaller error for the same time.",
-            own));
+        fmt::format("The front of {} lies at or below every peer's: no engine gives a smaller error for the "
+                    "same time.",
+                    own));
     return;
   }
   add(parent, "p", {{"class", "about"}}, fmt::format("Where a peer is ahead of {}:", own));
