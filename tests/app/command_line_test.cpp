@@ -1094,6 +1094,58 @@ TEST_F(Explain, RunThatDoesNotEndWell_IsAViolationWithTheReason) {
   EXPECT_THAT(broken.out, HasSubstr("invalid"));
 }
 
+// --- laws of impact
+// ------------------------------------------------------------------------------------------
+
+TEST_F(CommandLine, Law_RunsAsAnEngineUnderTest_BesideTheOthers) {
+  write("half.toml", "name = \"Half\"\nnormal = \"-0.5 * m * vn - m * vn\"\n");
+  const Ended ended = carom({"check", "impact/head-on", "--engine", "carom", "--law", "right", "--law",
+                             "half.toml", "--json", "results.json"});
+  EXPECT_EQ(ended.exit_code, kViolated);
+  ASSERT_EQ(runs().size(), 3U);
+  EXPECT_EQ(runs()[1].at("engine"), "carom:law");
+  EXPECT_EQ(runs()[1].at("profile"), "right");
+  EXPECT_EQ(runs()[1].at("verdict"), "pass");
+  EXPECT_EQ(runs()[2].at("profile"), "half");
+  EXPECT_EQ(runs()[2].at("verdict"), "fail");
+  EXPECT_EQ(runs()[2].at("settings").at("law_normal"), "-0.5 * m * vn - m * vn");
+  EXPECT_THAT(ended.out, HasSubstr("violated: impact/head-on: carom:law@half: energy = "));
+}
+
+TEST_F(CommandLine, Law_SaysWhatALawBreaks) {
+  const Ended ended = carom({"law", "mirrored", "--json", "laws.json"});
+  EXPECT_EQ(ended.exit_code, kHolds);
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("momentum is kept                        0 %"),
+                               HasSubstr("20000 random pairs")));
+  EXPECT_EQ(results("laws.json").at(0).at("rules").at(0).at("rule"), "momentum");
+  EXPECT_EQ(results("laws.json").at(0).at("rules").at(0).at("holds"), false);
+}
+
+TEST_F(CommandLine, LawWithoutAName_ListsWhatThereIs) {
+  const Ended ended = carom({"law"});
+  EXPECT_EQ(ended.exit_code, kHolds);
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("course-program"), HasSubstr("momentum-for-energy"),
+                               HasSubstr("reduced mass")));
+}
+
+TEST_F(CommandLine, LawsAreNoScenes) {
+  EXPECT_THAT(carom({"list", "scenarios"}).out, Not(HasSubstr("laws/")));
+}
+
+TEST_F(CommandLine, LawWithAMistake_IsAnsweredWithThePlaceAndTheNames) {
+  write("bad.toml", "name = \"Bad\"\nnormal = \"-2 * mm * vn\"\n");
+  for (const Words& words : {Words{"law", "bad.toml"}, Words{"run", "impact/head-on", "--law", "bad.toml"}}) {
+    const Ended ended = carom(words);
+    EXPECT_EQ(ended.exit_code, kBadInput);
+    EXPECT_THAT(ended.out, IsEmpty());
+    EXPECT_THAT(ended.err,
+                AllOf(StartsWith("carom: bad.toml:2:16: normal: "), HasSubstr("allowed names: m1, m2, m,")));
+  }
+  EXPECT_THAT(carom({"law", "nope"}).err, HasSubstr("no law \"nope\""));
+  EXPECT_THAT(carom({"run", "impact/head-on", "--engine", "carom:law"}).err,
+              HasSubstr("takes part with --law FILE"));
+}
+
 }  // namespace
 
 }  // namespace carom
