@@ -106,7 +106,7 @@ export class OverTime {
       const times = motions[0].times;
       const cut = (list) => times.map((_, k) => (k < list.length && Number.isFinite(list[k]) ? list[k] : null));
       const plot = new uPlot({
-        title, width, height: 190,
+        title, width, height: 190, pxAlign: 0,
         scales: { x: { time: false }, y: log ? { distr: 3 } : {} },
         axes: [axis, { ...axis, size: 62, values: (_, list) => list.map((x) => (x === null ? "" : language.number(x, 3))) }],
         series: [{ label: "t, s", value }, ...series.map(({ label, stroke, dash }) => ({ label, stroke, dash, width: 2, value, points: { show: false } }))],

@@ -162,7 +162,7 @@ export class Controls {
     const { clock, toggles } = viewer;
     this.showTime();
     const playing = clock.playing;
-    this.buttons.play.textContent = playing ? "⏸" : "▶";
+    this.buttons.play.textContent = playing ? "❚❚" : "▶";
     name_of(this.buttons.play, playing ? words.pause : words.play);
     this.speed.value = clock.speed;
     this.rate.textContent = words.rate(language.number(clock.rate * clock.speed, 3));
