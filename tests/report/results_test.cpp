@@ -195,7 +195,7 @@ TEST(Json, EnergyByCause_IsNull_WhereTheEngineCannotTell) {
   const nlohmann::json runs = nlohmann::json::parse(results_json(results, false)).at("scenes")[0].at("runs");
   EXPECT_EQ(runs[0].at("energy_by_cause"),
             nlohmann::json::parse(R"({"flight": 0.5, "ball_impacts": -1.0, "wall_impacts": -2.0,
-                                      "friction": -3.0, "position_correction": 4.0})"));
+                                      "friction": -3.0, "position_correction": 4.0, "events": 0.0})"));
   EXPECT_EQ(runs[1].at("energy_by_cause"), nullptr);
 }
 
