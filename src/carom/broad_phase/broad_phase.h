@@ -43,8 +43,9 @@ class BroadPhase {
   /// Replaces `others` by every other ball that `ball` may meet.
   virtual void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const = 0;
 
-  /// All balls in an order in which neighbours stand together; empty where the broad phase has none.
-  virtual std::span<const std::uint32_t> order() const = 0;
+  /// Replaces `balls` by all balls in an order in which neighbours stand together; by none where the broad
+  /// phase has no such order. @pre build() was called
+  virtual void find_order(std::vector<std::uint32_t>& balls) const = 0;
 };
 
 /// A broad phase as an evolver takes it, made from one that visits.
@@ -72,9 +73,9 @@ class BroadPhaseOf final : public BroadPhase<Dim> {
         ball, [&others](std::size_t other) { others.push_back(static_cast<std::uint32_t>(other)); });
   }
 
-  std::span<const std::uint32_t> order() const override {
-    if constexpr (requires { visitor_.order(); }) return visitor_.order();
-    return {};
+  void find_order(std::vector<std::uint32_t>& balls) const override {
+    balls.clear();
+    if constexpr (requires { visitor_.find_order(balls); }) visitor_.find_order(balls);
   }
 
  private:

@@ -77,10 +77,12 @@ class PairList {
   /// Now and then, before build(): sorts the balls in memory, so that those that are looked at together are
   /// loaded together. Returns whether it did; then the list holds no more.
   bool sort(World<Dim>& world) {
-    const std::span<const std::uint32_t> order = broad_phase_->order();
-    if (builds_in_this_order_ < kBuildsInAnOrder || order.empty()) return false;
-    world.reorder(order);
+    if (builds_in_this_order_ < kBuildsInAnOrder || bound_.empty()) return false;
     builds_in_this_order_ = 0;
+    std::vector<std::uint32_t> order;
+    broad_phase_->find_order(order);
+    if (order.empty()) return false;
+    world.reorder(order);
     enough_m_ = kNothingHolds;
     return true;
   }

@@ -74,6 +74,11 @@ class Tree {
     });
   }
 
+  /// Node by node, each before those below it: balls that are found together stand together.
+  void find_order(std::vector<std::uint32_t>& balls) const {
+    for (const Item& item : items_) balls.push_back(item.ball);
+  }
+
   /// Calls visit(low corner, high corner, number of balls kept here and not further down) for every cell,
   /// each before those inside it.
   template <class Visit>

@@ -83,8 +83,8 @@ class WrappedGrid {
     }
   }
 
-  /// The balls in the order of their cells, in which neighbours stand together.
-  std::span<const std::uint32_t> order() const { return ball_at_; }
+  /// Cell by cell.
+  void find_order(std::vector<std::uint32_t>& balls) const { balls = ball_at_; }
 
   const Count& count() const { return count_; }
 
