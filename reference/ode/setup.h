@@ -38,13 +38,16 @@ struct Setup {
   CellSizes cells;
 };
 
-/// Cells for fidelity, which here means: so that a scene of any size takes no longer than it must. A ball
-/// lies in the cells of the level just above its diameter.
+/// Cells for fidelity, which here means: so that a scene of any size takes no longer than it must. ODE gives
+/// a box that is d wide the smallest power of two above d, and what is larger than the largest cell is held
+/// against everything.
 inline CellSizes cells_for(const Scenario& scene) {
-  double largest_m = 0.0;
-  for (const Ball& ball : scene.balls) largest_m = std::max(largest_m, 2.0 * ball.radius);
-  const auto level = [](double length_m) { return static_cast<int>(std::ceil(std::log2(length_m))); };
-  return {level(2.0 * reference::smallest_radius_m(scene)), level(largest_m)};
+  double largest_m = reference::smallest_radius_m(scene);
+  for (const Ball& ball : scene.balls) largest_m = std::max(largest_m, ball.radius);
+  // A box is as wide as its ball, give or take what adding places rounds.
+  constexpr double kSpare = 1.0 + 1e-6;
+  const auto level = [](double radius_m) { return std::ilogb(2.0 * kSpare * radius_m) + 1; };
+  return {level(reference::smallest_radius_m(scene)), level(largest_m)};
 }
 
 inline Setup setup_for(const Scenario& scene, std::string_view profile) {
