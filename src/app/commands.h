@@ -27,4 +27,7 @@ ExitCode explain_command(const Options& options);
 /// @throws InputError before anything is run or written; MachineError.
 ExitCode study_command(const Options& options);
 
+/// carom lab: serves the lab's page on this machine until a signal ends it. @throws MachineError
+ExitCode lab_command(const Options& options);
+
 }  // namespace carom

@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   const Options& options = parsed.options;
   if (options.command == "list") return static_cast<int>(list_command(options));
   if (options.command == "explain") return static_cast<int>(explain_command(options));
+  if (options.command == "lab") return static_cast<int>(lab_command(options));
   if (options.command == "study") return static_cast<int>(study_command(options));
   if (options.command == "law") return static_cast<int>(law_command(options));
   return static_cast<int>(compare_command(options));

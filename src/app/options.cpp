@@ -123,6 +123,18 @@ void add_study(CLI::App& app, Options& options) {
                      "the CPU time in s beyond which a run that is foreseen to take longer is left out");
 }
 
+void add_lab(CLI::App& app, Options& options) {
+  CLI::App* lab = app.add_subcommand("lab", "the interactive page on localhost, until Ctrl-C");
+  lab->add_option("--port", options.port, "0: any that is free")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  lab->add_option("--engines-from", options.engines_from, "a folder with further engine modules (*.so)")
+      ->expected(1)
+      ->take_all();
+  lab->add_option("-j", options.parallel, "runs at a time (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+}
+
 /// CLI11 prints help through exceptions as well; the code tells them apart.
 int report(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
@@ -190,6 +202,7 @@ Parsed parse_options(int argc, char** argv) {
   add_common_options(*check, options);
 
   add_study(app, options);
+  add_lab(app, options);
 
   CLI::App* explain = app.add_subcommand("explain", "which of an engine's settings explains its divergence");
   explain->add_option("SCENE", options.scenes, "an id or a path")->required()->expected(1);
@@ -208,8 +221,8 @@ Parsed parse_options(int argc, char** argv) {
   law->add_option("--json", options.json_file, "write the findings as JSON to this file")->check(not_empty());
 
   CLI::App* help = app.add_subcommand("help", "help on a command");
-  help->add_option("COMMAND", options.topic, "list, run, check, study, explain, law or help")
-      ->check(CLI::IsMember({"list", "run", "check", "study", "explain", "law", "help"}));
+  help->add_option("COMMAND", options.topic, "list, run, check, study, explain, law, lab or help")
+      ->check(CLI::IsMember({"list", "run", "check", "study", "explain", "law", "lab", "help"}));
 
   // Once a command line is parsed, help() is that of the command it names.
   const std::string overview = app.help();

@@ -9,7 +9,7 @@ namespace carom {
 
 /// What the command line says.
 struct Options {
-  std::string command;  ///< "list", "run", "check", "study", "explain", "law" or "help"
+  std::string command;  ///< "list", "run", "check", "study", "explain", "law", "lab" or "help"
   std::string topic;    ///< of list and help
 
   std::vector<std::string> scenes;
@@ -35,6 +35,8 @@ struct Options {
   std::string study_file;   ///< a study that the page shows, too
   int repeats = 5;          ///< timed runs of each setting
   double study_timeout_s = 2.0;
+
+  int port = 8010;  ///< of the lab; 0: any that is free
 
   int parallel = 1;
   double timeout_s = 120.0;
