@@ -1,7 +1,6 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
 #include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -22,6 +21,7 @@
 #include "carom/carom_engine.h"
 #include "report/playback.h"
 #include "scenario/parse.h"
+#include "tests/lab/http_client.h"
 #include "trajectory/record.h"
 
 // The lab as a browser meets it: the program as a process, and HTTP.
