@@ -9,9 +9,9 @@ async function ask(path, body) {
 }
 
 export const api = {
-  /** [{id, title: {en, de}}, …], those of the course first */
+  /** [{id, title, about, dimension}, …], those of the course first */
   modes: () => ask("api/modes"),
-  /** labels of engines, with their profiles */
+  /** [{label, name, profile, …}, …]: the label is name or name@profile */
   engines: () => ask("api/engines"),
   /** {toml} */
   scene: (id) => ask(`api/scene?id=${encodeURIComponent(id)}`),

@@ -53,7 +53,7 @@ class Lab {
       this.error.textContent = error.message;
       return;
     }
-    this.engines = this.engines.map((engine) => (typeof engine === "string" ? engine : engine.label));
+    this.engines = this.engines.map(({ label }) => label);
     this.say();
     const shared = await sharedIn(location.hash);
     if (shared) await this.openShared(shared);
@@ -101,7 +101,7 @@ class Lab {
 
   /** Runs the scene in the chosen engines and plays it on from where the last one was. */
   async run(toml, options, remember = false) {
-    const request = { toml, id: this.id, engines: this.chosen.filter((label) => label && !label.startsWith("law@")) };
+    const request = { toml, engines: this.chosen.filter((label) => label && !label.startsWith(kLawEngine)) };
     if (this.law) request.law = lawToml(this.law);
     this.busy.textContent = language.words.lab.running;
     const playback = await api.run(request).finally(() => { this.busy.textContent = ""; });
@@ -111,7 +111,7 @@ class Lab {
     this.sceneBox.text.value = toml;
     const kept = this.viewer?.state() ?? {};
     this.viewer?.close();
-    const own = playback.runs.find((run) => run.engine === "law")?.label;
+    const own = playback.runs.find((run) => run.engine === kLawEngine)?.label;
     const [first, second] = this.chosen;
     const engines = own && this.law ? [first || own, own] : [first, second];
     const host = make("div");
@@ -246,6 +246,8 @@ class Lab {
   }
 }
 
+const kLawEngine = "carom:law";
+
 function grouped(modes) {
   const groups = new Map();
   for (const mode of modes) {
@@ -255,7 +257,7 @@ function grouped(modes) {
   return groups;
 }
 
-const titleOf = ({ id, title }) => (typeof title === "string" ? title : title?.[language.id] ?? title?.en) ?? id;
+const titleOf = ({ id, title }) => language.words.modes[id]?.title ?? title ?? id;
 
 const lab = new Lab(document.getElementById("lab"));
 document.getElementById("lab").caromLab = lab;

@@ -73,7 +73,8 @@ export class Playback {
     this.rounding = json.rounding;
     this.leftOut = json.left_out;
     this.frames = json.frames;
-    this.balls = { count: json.balls.count, shown: json.balls.shown };
+    this.balls = { count: json.balls.count, shown: json.balls.shown, first: json.balls.first ?? json.balls.shown };
+    this.changes = json.balls.changes ?? [];
     this.runs = json.runs;
     this.packedBalls = json.balls;
     this.unpacked = new Map();

@@ -12,16 +12,20 @@ const kImpulse_s = 0.7;     // of the person who watches: how long an impulse is
 const kMostImpulses = 60;
 const kDiverged = 1e-3;     // radii
 
-/** The masses and radii at a time: as in the scene, changed by its events until then. */
+/**
+ * The masses and radii at a time, as events have changed them until then. A ball that is not there has neither: its mass
+ * is NaN, so that it counts nowhere, and its radius 0.
+ */
 export function bodiesAt(playback, time) {
-  const { mass, radius } = playback.balls;
-  const due = playback.scene.events.filter((event) => event.time <= time && (event.scale_mass || event.scale_radius));
-  if (due.length === 0) return { masses: mass, radii: radius };
+  const { balls: { mass, radius, first, shown }, changes, frames, scene } = playback;
+  if (changes.length === 0) return { masses: mass, radii: radius };
   const [masses, radii] = [mass.slice(), radius.slice()];
-  for (const event of due) {
-    if (event.ball >= masses.length) continue;
-    masses[event.ball] *= event.scale_mass ?? 1;
-    radii[event.ball] *= event.scale_radius ?? 1;
+  masses.fill(NaN, first, shown);
+  radii.fill(0, first, shown);
+  for (const change of changes) {
+    if (change.frame / frames.intervals * scene.duration > time * (1 + 1e-12)) continue;
+    masses[change.ball] = change.there ? change.mass ?? Infinity : NaN;
+    radii[change.ball] = change.there ? change.radius : 0;
   }
   return { masses, radii };
 }
@@ -61,6 +65,7 @@ export function pictureOf(shot) {
   const turns = new Float32Array(4 * motion.balls);
   if (toggles.spin !== "off") motion.turnsAt(toggles.spin, state.time, bodies.radii, turns);
   for (let i = 0; i < motion.balls; i += 1) {
+    if (Number.isNaN(bodies.masses[i])) continue;
     const away = shot.twin ? distance(state, shot.twin, i) / bodies.radii[i] : 0;
     picture.ball(point(state.x, i), bodies.radii[i], shade(shot, i, away), {
       turned: toggles.spin === "off" ? null : turns.subarray(4 * i, 4 * i + 4),
@@ -116,6 +121,7 @@ function drawArrows(picture, shot) {
   const { motion, state, bodies, theme, toggles, scales, unit } = shot;
   const drift = toggles.frame ? totals(state, bodies.masses).velocity : [0, 0, 0];
   for (let i = 0; i < motion.balls; i += 1) {
+    if (Number.isNaN(bodies.masses[i])) continue;
     const v = point(state.v, i).map((x, c) => x - drift[c]);
     // From the surface on, so that no arrow hides in its ball.
     const speed = Math.hypot(...v);

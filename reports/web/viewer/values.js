@@ -21,6 +21,7 @@ export class Values {
     if (states[1]) heads.push(c.away);
     const rows = [];
     for (let i = 0; i < Math.min(motions[0].balls, kRows); i += 1) {
+      if (Number.isNaN(bodies.masses[i])) continue;
       rows.push(this.row(i, axes.length, scene, motions[0], states, bodies));
     }
     const table = make("table", {},

@@ -100,46 +100,55 @@ export const de = {
   },
   modes: {
     "course/normal-mode": {
+      title: "Normalmodus",
       see: "Kugeln, die einander durchdringen, fliegen geradeaus und prallen an den Wänden ab.",
       formula: "Zwischen den Wänden wächst jede Koordinate gleichmäßig; eine Wand kehrt das Vorzeichen ihrer Geschwindigkeit um.",
       try: "Die Geschwindigkeiten einschalten (V) und von Stoß zu Stoß gehen (⇧ →): Ein Vorzeichen ändert sich, keine Länge.",
     },
     "course/brute-force": {
+      title: "Rohe Gewalt",
       see: "Jede Kugel wird gegen jede andere geprüft, und zwei, die sich berühren, prallen auseinander.",
       formula: "n Kugeln bilden n (n − 1)/2 Paare, und zwei berühren sich bei d = r₁ + r₂.",
       try: "Den Baum einschalten (Q) und seine Zahl der Tests mit der von roher Gewalt vergleichen.",
     },
     "course/quadtree": {
+      title: "Quadtree",
       see: "Wo sich mehr als vier Kugeln drängen, wird der Raum in vier geteilt; geprüft werden nur Kugeln einer Zelle.",
       formula: "Die Tests wachsen etwa wie n log n und nicht mehr wie n².",
       try: "Anhalten, Bild für Bild weitergehen (→) und zusehen, wie Zellen entstehen, wo sich Kugeln sammeln.",
     },
     "course/octree": {
+      title: "Octree",
       see: "Der Quadtree im Raum: Ein voller Würfel wird in acht geteilt.",
       formula: "Die Tests wachsen etwa wie n log n und nicht mehr wie n².",
       try: "Das Bild drehen und den Baum ein- und ausschalten (Q).",
     },
     "course/impulse": {
+      title: "Kraftstoß",
       see: "Kugeln verschiedener Masse stoßen sich; bei jedem Stoß erhalten beide denselben Kraftstoß, entgegengesetzt gerichtet.",
       formula: "Der Kraftstoß längs der Verbindung der Mittelpunkte lässt Impuls und Energie, wie sie waren.",
       try: "Die Kraftstöße einschalten (3); im Labor eine Kugel anklicken, um sie schwerer zu machen, mit der rechten Taste leichter.",
     },
     "course/quantum-barrier": {
+      title: "Tunneln: die Quantenbarriere",
       see: "Kugeln laufen gegen eine Barriere, die höher ist als ihre Energie; manche erscheinen auf der anderen Seite, die übrigen werden zurückgeworfen.",
       formula: "Ein Quantenteilchen geht mit der Wahrscheinlichkeit T hindurch.",
       try: "Bis zum Ende laufen lassen und die Zahl der durchgelassenen mit T vergleichen: Sie liegen etwa einen Standardfehler auseinander.",
     },
     "course/thin-slab": {
+      title: "Tunneln: die dünne Platte",
       see: "Eine schnelle Kugel trifft eine dünne Platte: Eine Engine, die nur am Ende jedes Schritts nachsieht, findet sie vielleicht dahinter.",
       formula: "Ein Schritt, der die Kugel weiter bringt, als Platte und Kugel dick sind, kann beide überspringen.",
       try: "carom:step neben carom stellen und dieselbe Kugel hindurchgehen und umkehren sehen.",
     },
     "course/velocity-arrows": {
+      title: "Geschwindigkeitspfeile",
       see: "Ein Pfeil an jeder Kugel zeigt, wohin sie fliegt und wie schnell.",
       formula: "Geschwindigkeit ist die Änderung des Ortes mit der Zeit.",
       try: "Von Stoß zu Stoß gehen (⇧ →): Stoßen zwei gleiche Kugeln gerade zusammen, tauschen die Pfeile ihre Plätze.",
     },
     "course/effet": {
+      title: "Effet: Drehung",
       see: "Gemusterte Kugeln zeigen ihre Drehung; Reibung dreht sie beim Stoß, und Drehung ändert, wie sie weiterfliegen.",
       formula: "Die Reibung ist höchstens μ mal der Normalstoß, und ihr Moment ändert die Drehung.",
       try: "Zwischen der physikalischen Drehung und der Anzeige des Kursprogramms ω = v/r wechseln (E), die gar keine Drehung ist.",

@@ -100,46 +100,55 @@ export const en = {
   },
   modes: {
     "course/normal-mode": {
+      title: "Normal mode",
       see: "Balls that pass through each other fly straight on and bounce off the walls.",
       formula: "Between walls each coordinate grows evenly; a wall turns the sign of its velocity.",
       try: "Switch on the velocities (V) and step from impact to impact (⇧ →): one sign changes, and no length.",
     },
     "course/brute-force": {
+      title: "Brute force",
       see: "Every ball is tested against every other one, and two that touch are thrown apart.",
       formula: "n balls make n (n − 1)/2 pairs, and two touch where d = r₁ + r₂.",
       try: "Switch on the tree (Q) and compare its number of tests with that of brute force.",
     },
     "course/quadtree": {
+      title: "Quadtree",
       see: "Space is divided in four wherever more than four balls crowd, and only balls in one cell are tested.",
       formula: "The tests grow about as n log n, and no longer as n².",
       try: "Pause, go on frame by frame (→), and watch cells appear where balls gather.",
     },
     "course/octree": {
+      title: "Octree",
       see: "The quadtree in space: a crowded cube is divided in eight.",
       formula: "The tests grow about as n log n, and no longer as n².",
       try: "Turn the picture, and switch the tree on and off (Q).",
     },
     "course/impulse": {
+      title: "Impulse",
       see: "Balls of different mass hit each other; at each impact both get the same impulse, in opposite directions.",
       formula: "The impulse along the line of centres leaves momentum and energy as they were.",
       try: "Switch on the impulses (3); in the lab click a ball to make it heavier, or with the right button lighter.",
     },
     "course/quantum-barrier": {
+      title: "Tunnelling: the quantum barrier",
       see: "Balls run against a barrier higher than their energy; some appear at its other face, the others are thrown back.",
       formula: "A quantum particle passes with the probability T.",
       try: "Let it run to the end and hold the number that passed against T: they differ by about one standard error.",
     },
     "course/thin-slab": {
+      title: "Tunnelling: the thin slab",
       see: "A fast ball meets a thin slab: an engine that looks only at the end of each step may find it beyond.",
       formula: "A step that takes the ball farther than slab and ball are thick can jump over both.",
       try: "Put carom:step beside carom, and see the same ball pass and be turned back.",
     },
     "course/velocity-arrows": {
+      title: "Velocity arrows",
       see: "An arrow at each ball shows where it goes, and how fast.",
       formula: "Velocity is the change of position by time.",
       try: "Step from impact to impact (⇧ →): of two equal balls in a head-on hit, the arrows change places.",
     },
     "course/effet": {
+      title: "Effet: spin",
       see: "Textured balls show their spin; friction turns them at an impact, and spin changes how they leave.",
       formula: "Friction is at most μ times the normal impulse, and its moment changes the spin.",
       try: "Change between the physical spin and the course program's look ω = v/r (E), which is no spin at all.",
