@@ -174,13 +174,17 @@ class Lab {
     this.busy.textContent = language.words.lab.shared;
   }
 
-  async guarded(work) {
-    this.error.textContent = "";
-    try {
-      await work();
-    } catch (error) {
-      this.error.textContent = error.message;
-    }
+  /** Does one thing after the other, so that a late answer never replaces a newer one; what fails is told. */
+  guarded(work) {
+    this.queue = (this.queue ?? Promise.resolve()).then(async () => {
+      this.error.textContent = "";
+      try {
+        await work();
+      } catch (error) {
+        this.error.textContent = error.message;
+      }
+    });
+    return this.queue;
   }
 
   // --- words

@@ -1,0 +1,139 @@
+// The lab in a real browser, with its server and real engines.
+
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import test, { after, before } from "node:test";
+
+import { openBrowser } from "./browser.mjs";
+
+let server;
+let address;
+let browser;
+let page;
+before(async () => {
+  server = spawn(process.env.CAROM_PROGRAM, ["lab", "--port", "0"], { stdio: ["ignore", "pipe", "inherit"] });
+  address = await new Promise((found, failed) => {
+    let text = "";
+    server.stdout.on("data", (piece) => {
+      text += piece;
+      const told = /http:\/\/127\.0\.0\.1:\d+\//.exec(text);
+      if (told) found(told[0]);
+    });
+    server.on("exit", (code) => failed(new Error(`carom lab ended with ${code}`)));
+  });
+  browser = await openBrowser();
+  page = await browser.page();
+  await page.goto(address);
+  await settled();
+});
+after(async () => {
+  await browser?.close();
+  server?.kill("SIGTERM");
+});
+
+/** Waits until the engines have run and the viewer is there. */
+async function settled() {
+  await page.waitForFunction(() => {
+    const { caromLab } = document.getElementById("lab");
+    return caromLab.viewer?.stage && !document.querySelector(".lab-busy").textContent;
+  });
+}
+
+const lab = (read) => page.evaluate(`(() => { const lab = document.getElementById("lab").caromLab; return (${read})(lab); })()`);
+const error = () => page.locator("main > .lab-error").innerText();
+
+async function openMode(id) {
+  await page.locator(`.lab-mode[data-id="${id}"]`).click();
+  await page.waitForFunction((wanted) => {
+    const { caromLab } = document.getElementById("lab");
+    return caromLab.viewer?.stage && caromLab.viewer.playback.scene.id === wanted;
+  }, id);
+  await settled();
+}
+
+test("Lab_OpensEveryModeOfTheCourse", async () => {
+  const ids = await page.locator(".lab-mode").evaluateAll((all) => all.map((each) => each.dataset.id));
+  assert.ok(ids.length >= 9, ids.join());
+  for (const id of ids) {
+    await openMode(id);
+    assert.equal(await error(), "", id);
+    assert.equal(await page.locator(".cv-mode > p").count(), 3, id);
+  }
+});
+
+test("Lab_PutsAnotherEngineBesideTheFirst", async () => {
+  await openMode("course/thin-slab");
+  await page.locator(".cv-engine-b").selectOption("carom:step").catch(() => page.locator(".cv-engine-b").selectOption("box2d"));
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 2);
+  assert.equal(await page.locator(".cv-name").count(), 2);
+  await page.locator(".cv-engine-b").selectOption("");
+});
+
+test("Lab_MakesABallHeavier_AndTheFileSaysSo", async () => {
+  await openMode("course/brute-force");
+  await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.goTo(1); }");
+  const before = await lab("(lab) => lab.viewer.bodies.masses[2]");
+  await page.locator(".lab-ball").fill("2");
+  await page.locator(".lab-ball").press("Tab");
+  await page.locator(".lab-heavier").click();
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.toml.includes("[[event]]"));
+  await settled();
+  assert.equal(await error(), "");
+  const toml = await page.locator(".lab-toml").inputValue();
+  assert.match(toml, /\[\[event\]\][^[]*scale_mass\s*=\s*1\.1/);
+  await lab("(lab) => lab.viewer.goTo(2)");
+  await page.waitForFunction((m) => document.getElementById("lab").caromLab.viewer.bodies.masses[2] > m, before);
+  assert.ok(Math.abs(await lab("(lab) => lab.viewer.bodies.masses[2]") - 1.1 * before) < 1e-12 * before);
+});
+
+test("Lab_JudgesALaw_AndNamesAMistake", async () => {
+  await openMode("course/impulse");
+  await page.locator(".lab-law summary").click();
+  await page.locator(".lab-example").selectOption("times-e");
+  await page.locator(".lab-try").click();
+  const rows = page.locator(".lab-rules tbody tr");
+  await rows.first().waitFor();
+  const broken = await rows.evaluateAll((all) => all.filter((row) => row.className === "lab-broken").map((row) => row.cells[0].textContent));
+  assert.ok(broken.includes("the balls part with e times the speed at which they met"), broken.join());
+  assert.ok(!broken.includes("momentum is kept"), broken.join());
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 2);
+  await page.locator(".lab-normal").fill("-(1 + e) * mm * vn");
+  await page.locator(".lab-try").click();
+  await page.waitForFunction(() => document.querySelector(".lab-law .lab-error").textContent.includes("mm"));
+  await page.locator(".lab-untry").click();
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 1);
+  await settled();
+});
+
+test("Lab_AnswersBadInput_AsTheCommandLineDoes", async () => {
+  await page.locator(".lab-scene").evaluate((box) => { box.open = true; });
+  const toml = await page.locator(".lab-toml").inputValue();
+  await page.locator(".lab-toml").fill(`colour = 1\n${toml}`);
+  await page.locator(".lab-run").click();
+  await page.waitForFunction(() => document.querySelector("main > .lab-error").textContent.includes("colour: unknown key"));
+  await page.locator(".lab-toml").fill(toml);
+});
+
+test("Lab_SharesASceneByItsLink", async () => {
+  await openMode("course/quadtree");
+  await page.locator(".lab-scene").evaluate((box) => { box.open = true; });
+  await page.locator(".lab-share").click();
+  await page.locator(".lab-link").waitFor();
+  const link = await page.locator(".lab-link").inputValue();
+  const toml = await page.locator(".lab-toml").inputValue();
+  const other = await browser.page();
+  await other.goto(link);
+  await other.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.stage);
+  assert.equal(await other.locator(".lab-toml").inputValue(), toml);
+  await other.close();
+});
+
+test("Lab_SpeaksGerman_AndFitsAPhone", async () => {
+  await page.locator(".cv-language").selectOption("de");
+  assert.equal(await page.locator("h1").innerText(), "Carom-Labor");
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.waitForTimeout(100);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 391);
+  // What the server refuses is told by the browser too; nothing else may fail.
+  assert.deepEqual(page.failures.filter((text) => !text.includes("400")), []);
+});
