@@ -205,8 +205,10 @@ void race_in_numbers(const Effort& effort, Findings& findings) {
       say(fmt::format("the growth of {}, {}", evolver, layout.name));
       std::vector<Cost> costs;
       for (const Scenario& scene : scenes) {
+        // Long enough for many of a pair list's lives, each of which begins with all the work of its making.
+        const double shortest_s = effort.shortest_s * (scene.balls.size() >= effort.most_balls ? 15.0 : 3.0);
         costs.push_back(
-            race(runners({"carom:" + evolver}, scene), std::min(effort.rounds, kFewRounds), effort.shortest_s)
+            race(runners({"carom:" + evolver}, scene), std::min(effort.rounds, kFewRounds), shortest_s)
                 .front());
       }
       findings.add("growth: " + layout.name, "ball and step", costs);
