@@ -12,9 +12,9 @@ namespace carom::benchmark {
 namespace {
 
 constexpr double kRadius_m = 0.5;
-/// Between the surfaces of balls in a corner.
-constexpr double kGap_m = 0.05;
-/// Of a box whose balls are in one corner, by the side of their lattice.
+/// Of balls that lie in a corner, in that corner.
+constexpr double kPackingInCorner = 0.2;
+/// The side of a box whose balls are in one corner, by that of the corner.
 constexpr double kEmptiness = 10.0;
 
 /// Of a ball of radius 1.
@@ -30,8 +30,6 @@ double mean_power(const Layout& layout) {
 }
 
 double side_m(const Layout& layout, std::size_t balls) {
-  const double per_axis = std::ceil(std::pow(static_cast<double>(balls), 1.0 / layout.dimension));
-  if (layout.in_a_corner) return kEmptiness * per_axis * (2.0 * kRadius_m + kGap_m);
   const double volume = static_cast<double>(balls) * mean_power(layout) * unit_volume(layout.dimension) *
                         std::pow(kRadius_m, layout.dimension);
   return std::pow(volume / layout.packing, 1.0 / layout.dimension);
@@ -43,15 +41,18 @@ std::string along_axes(int dimension, double value) {
   return "[" + one + ", " + one + (dimension == 3 ? ", " + one : "") + "]";
 }
 
-std::string placing(const Layout& layout) {
-  if (layout.in_a_corner) {
-    return fmt::format("kind = \"lattice\"\nposition = {}\ngap = {}\nradius = {}\n",
-                       along_axes(layout.dimension, kRadius_m + kGap_m), kGap_m, kRadius_m);
+std::string radii(const Layout& layout) {
+  return layout.size_ratio == 1.0 ? fmt::format("{}", kRadius_m)
+                                  : fmt::format("[{}, {}]", kRadius_m, layout.size_ratio * kRadius_m);
+}
+
+/// Puts a box around the scene that is wider than the one that its balls fill. The walls of that go on
+/// standing, so that the balls stay in their corner, where they would fill all the room in time.
+void leave_in_a_corner(Scenario& scene) {
+  scene.box->max *= kEmptiness;
+  for (int axis = 0; axis < scene.dimension; ++axis) {
+    scene.walls.push_back({-Vec3::Unit(axis), -scene.box->max[axis]});
   }
-  const std::string radius = layout.size_ratio == 1.0
-                                 ? fmt::format("{}", kRadius_m)
-                                 : fmt::format("[{}, {}]", kRadius_m, layout.size_ratio * kRadius_m);
-  return fmt::format("kind = \"gas\"\npacking = {}\nradius = {}\n", layout.packing, radius);
 }
 
 }  // namespace
@@ -76,6 +77,7 @@ std::vector<Layout> growth_layouts() {
     Layout corner = equal;
     corner.name += ", in a corner";
     corner.in_a_corner = true;
+    corner.packing = kPackingInCorner;
     layouts.push_back(corner);
   }
   return layouts;
@@ -86,13 +88,15 @@ std::string toml_of(const Layout& layout, std::size_t balls) {
       "title = \"{} balls\"\nabout = \"What engines are timed with\"\ndimension = {}\nduration = {}\nstep = "
       "{}\n"
       "frames = 100\n[truth]\nkind = \"none\"\n[box]\nmin = {}\nmax = {}\n"
-      "[[balls]]\ncount = {}\nseed = 1\nmass = 1.0\nspeed = 1.0\n{}",
+      "[[balls]]\nkind = \"gas\"\ncount = {}\nseed = 1\nmass = 1.0\nspeed = 1.0\npacking = {}\nradius = {}\n",
       balls, layout.dimension, 1000.0 / 240.0, 1.0 / 240.0, along_axes(layout.dimension, 0.0),
-      along_axes(layout.dimension, side_m(layout, balls)), balls, placing(layout));
+      along_axes(layout.dimension, side_m(layout, balls)), balls, layout.packing, radii(layout));
 }
 
 Scenario scene_of(const Layout& layout, std::size_t balls) {
-  return *parse_scene(toml_of(layout, balls), layout.name);
+  Scenario scene = *parse_scene(toml_of(layout, balls), layout.name);
+  if (layout.in_a_corner) leave_in_a_corner(scene);
+  return scene;
 }
 
 }  // namespace carom::benchmark

@@ -18,7 +18,7 @@ struct Layout {
   int dimension = 3;
   double packing = 0.1;      ///< the share of the box that they fill
   double size_ratio = 1.0;   ///< of the largest to the smallest radius
-  bool in_a_corner = false;  ///< on a tight lattice in one corner of a box that is ten times as wide
+  bool in_a_corner = false;  ///< walled in, in one corner of a box that is ten times as wide
 };
 
 /// A gas of packing 0.1.
@@ -30,7 +30,7 @@ Layout hard_sphere_gas();
 /// What the growth of the cost is measured in.
 std::vector<Layout> growth_layouts();
 
-/// As a scene file says it.
+/// As a scene file says it; the walls of a corner are put there by scene_of().
 std::string toml_of(const Layout& layout, std::size_t balls);
 
 Scenario scene_of(const Layout& layout, std::size_t balls);
