@@ -111,6 +111,7 @@ std::vector<std::string> without_ode_among_many(std::vector<std::string> engines
 
 std::vector<Runner> runners(const std::vector<std::string>& engines, const Scenario& scene) {
   std::vector<Runner> all;
+  all.reserve(engines.size());
   for (const std::string& engine : engines) all.push_back({engine, &scene, Unit::ball_step});
   return all;
 }

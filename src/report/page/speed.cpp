@@ -30,7 +30,7 @@ std::string with_spread(const Json& samples) {
                      number(samples.at("high").get<double>()));
 }
 
-std::string with_unit(std::string value, const Json& row) {
+std::string with_unit(const std::string& value, const Json& row) {
   const std::string unit = row.at("unit");
   return unit.empty() ? value : value + " " + unit;
 }

@@ -83,6 +83,7 @@ std::vector<Cost> race(const std::vector<Runner>& runners, int rounds, double sh
   }
   for (int round = 0; round < rounds; ++round) ::benchmark::RunSpecifiedBenchmarks(&taker, "all");
   std::vector<Cost> costs;
+  costs.reserve(runners.size());
   for (const Runner& runner : runners) {
     costs.push_back({runner.engine, runner.scene->balls.size(), taker.costs.at(runner.engine)});
   }
