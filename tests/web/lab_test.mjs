@@ -43,10 +43,11 @@ const lab = (read) => page.evaluate(`(() => { const lab = document.getElementByI
 const error = () => page.locator("main > .lab-error").innerText();
 
 async function openMode(id) {
+  await lab("(lab) => { globalThis.viewerBefore = lab.viewer; }");
   await page.locator(`.lab-mode[data-id="${id}"]`).click();
   await page.waitForFunction((wanted) => {
     const { caromLab } = document.getElementById("lab");
-    return caromLab.viewer?.stage && caromLab.viewer.playback.scene.id === wanted;
+    return caromLab.viewer?.stage && caromLab.viewer !== globalThis.viewerBefore && caromLab.viewer.playback.scene.id === wanted;
   }, id);
   await settled();
 }
