@@ -18,7 +18,7 @@ export class Camera {
   /** Half of what is seen in height at the target, m. */
   halfHeight(aspect) {
     const [w, h, d] = this.box.high.map((x, c) => x - this.box.low[c]);
-    const half = this.flat ? 0.5 * Math.max(h, w / aspect) : 0.46 * Math.hypot(w, h, d) * Math.max(1, 0.9 / aspect);
+    const half = this.flat ? 0.5 * Math.max(h, w / aspect) : 0.5 * Math.hypot(w, h, d) * Math.max(1, 0.9 / aspect);
     return 1.06 * Math.max(half, 1e-300) / this.zoom;
   }
 

@@ -104,6 +104,14 @@ export function extent(scene, motions, radii) {
       }
     }
   }
+  // What a ball may come out of is seen from both sides.
+  const wide = Math.max(...high.map((x, c) => x - low[c]));
+  for (const { normal, offset, thickness } of [...scene.slabs, ...scene.barriers]) {
+    const axis = normal.findIndex((n) => Math.abs(n) === 1);
+    if (axis < 0) continue;
+    low[axis] = Math.min(low[axis], offset * normal[axis] - thickness - 0.15 * wide);
+    high[axis] = Math.max(high[axis], offset * normal[axis] + thickness + 0.15 * wide);
+  }
   if (scene.dimension === 2) low[2] = high[2] = 0;
   // A ball that only moves along a line is seen with room beside its path.
   const size = Math.max(...high.map((x, c) => x - low[c]));

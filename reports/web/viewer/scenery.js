@@ -77,7 +77,7 @@ export function pictureOf(shot) {
   drawArrows(picture, shot);
   if (toggles.centre || toggles.frame) drawCentre(picture, shot);
   if (toggles.tree) {
-    shot.tree = divide(state, bodies.radii, motion.scene.dimension);
+    shot.tree = divide(state, bodies.radii, motion.scene.dimension, motion.scene.box);
     for (const { centre, half, depth } of shot.tree.cells) {
       picture.cube(centre, [half, half, half], theme.tree, motion.scene.dimension, Math.max(0.9 - 0.1 * depth, 0.35));
     }

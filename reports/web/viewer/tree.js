@@ -4,9 +4,9 @@
 const kFullAt = 4;
 const kDeepest = 9;
 
-function cellAround(state, radii, dimension) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
+function cellAround(state, radii, dimension, box) {
+  const low = box ? [...box.min] : [Infinity, Infinity, Infinity];
+  const high = box ? [...box.max] : [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < radii.length; i += 1) {
     for (let c = 0; c < 3; c += 1) {
       low[c] = Math.min(low[c], state.x[3 * i + c] - radii[i]);
@@ -31,9 +31,10 @@ function reaches(cell, state, i, radius, dimension) {
 }
 
 /**
+ * @param box  of the scene, where it has one; the root holds it
  * @returns cells (centre, half, depth; the root first), tests (pairs that share a cell, each once) and bruteForce (all)
  */
-export function divide(state, radii, dimension) {
+export function divide(state, radii, dimension, box = null) {
   const count = radii.length;
   const cells = [];
   const pairs = new Set();
@@ -51,6 +52,6 @@ export function divide(state, radii, dimension) {
       for (let b = 0; b < a; b += 1) pairs.add(balls[a] * count + balls[b]);
     }
   };
-  if (count > 0) visit(cellAround(state, radii, dimension), [...radii.keys()]);
+  if (count > 0) visit(cellAround(state, radii, dimension, box), [...radii.keys()]);
   return { cells, tests: pairs.size, bruteForce: count * (count - 1) / 2 };
 }
