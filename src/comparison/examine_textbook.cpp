@@ -178,10 +178,10 @@ CoincidentMeasured measure_coincident() {
 // --- the law with squared speeds
 
 SquaredLaw measure_squares(double e) {
-  constexpr double m1 = 1.0;
-  constexpr double m2 = 3.0;
-  constexpr double v1 = 2.0;
-  constexpr double v2 = -1.0;
+  const double m1 = 1.0;
+  const double m2 = 3.0;
+  const double v1 = 2.0;
+  const double v2 = -1.0;
   const double impulse_Ns = -(1.0 + e) * (v2 - v1) / (1.0 / m1 + 1.0 / m2);
   const double w1 = v1 - impulse_Ns / m1;
   const double w2 = v2 + impulse_Ns / m2;

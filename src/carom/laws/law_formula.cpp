@@ -230,6 +230,7 @@ void refuse_assignment(const LawExpression& expression) {
 const std::vector<LawName>& law_names() {
   static const std::vector<LawName> names = [] {
     std::vector<LawName> all;
+    all.reserve(named_values().size());
     for (const NamedValue& each : named_values()) all.push_back(each.name);
     return all;
   }();
@@ -239,6 +240,7 @@ const std::vector<LawName>& law_names() {
 const std::vector<std::string_view>& law_functions() {
   static const std::vector<std::string_view> functions = [] {
     std::vector<std::string_view> all;
+    all.reserve(kFunctions.size() + kBinaryFunctions.size());
     for (const Function& each : kFunctions) all.push_back(each.name);
     for (const BinaryFunction& each : kBinaryFunctions) all.push_back(each.name);
     return all;

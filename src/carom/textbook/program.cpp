@@ -52,7 +52,7 @@ void Program::meet_walls(ProgramBall& ball) {
     const float s = ball.v.dot(wall.normal);
     if (!(ball.x.dot(wall.normal) - wall.offset < ball.radius && s < 0.0F)) continue;
     const Vec3 before_mps = velocity_mps(ball);
-    const double before_J = kinetic_J(ball);
+    const double before_J = kinetic_energy(ball);
     ball.v -= 2.0F * s * wall.normal;
     const Vec3 normal = wall.normal.cast<double>();
     const Vec3 impulse_Ns = static_cast<double>(ball.mass) * (velocity_mps(ball) - before_mps);
@@ -62,7 +62,7 @@ void Program::meet_walls(ProgramBall& ball) {
     tally_.wall_push_Ns += impulse_Ns.dot(normal);
     tally_.external_impulse += impulse_Ns;
     tally_.external_angular_impulse += contact_m.cross(impulse_Ns);
-    tally_.energy.wall_impacts_J += kinetic_J(ball) - before_J;
+    tally_.energy.wall_impacts_J += kinetic_energy(ball) - before_J;
   }
 }
 
@@ -77,12 +77,12 @@ void Program::exchange(ProgramBall& one, ProgramBall& two, float d) {
   const Vec3f n = (one.x - two.x) / d;
   const float s = (one.v - two.v).dot(n);
   if (!(s <= 0.0F)) return;
-  const double before_J = kinetic_J(one) + kinetic_J(two);
+  const double before_J = kinetic_energy(one) + kinetic_energy(two);
   const float p = 2.0F * s / (one.mass + two.mass);
   one.v -= p * two.mass * n;
   two.v += p * one.mass * n;
   if (s < 0.0F) ++tally_.impacts;
-  tally_.energy.ball_impacts_J += kinetic_J(one) + kinetic_J(two) - before_J;
+  tally_.energy.ball_impacts_J += kinetic_energy(one) + kinetic_energy(two) - before_J;
 }
 
 void Program::push_apart(ProgramBall& one, ProgramBall& two, float d) {
@@ -95,7 +95,7 @@ void Program::push_apart(ProgramBall& one, ProgramBall& two, float d) {
                                 static_cast<double>(two.mass) * gravity_.dot(second.cast<double>());
 }
 
-double Program::kinetic_J(const ProgramBall& ball) const {
+double Program::kinetic_energy(const ProgramBall& ball) const {
   return 0.5 * static_cast<double>(ball.mass) * velocity_mps(ball).squaredNorm();
 }
 

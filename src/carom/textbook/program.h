@@ -67,7 +67,7 @@ class Program {
   void exchange(ProgramBall& one, ProgramBall& two, float d);
   void push_apart(ProgramBall& one, ProgramBall& two, float d);
   Vec3 velocity_mps(const ProgramBall& ball) const { return ball.v.cast<double>() / update_s_; }
-  double kinetic_J(const ProgramBall& ball) const;
+  double kinetic_energy(const ProgramBall& ball) const;  ///< J
 
   std::vector<ProgramBall> balls_;
   std::vector<ProgramWall> walls_;
