@@ -160,8 +160,10 @@ class ToiEvolver final : public Simulation {
     const Place d = world().position[b] - world().position[a];
     const Place w = world().velocity[b] - world().velocity[a];
     const double sum = world().radius[a] + world().radius[b] + fall_m;
+    const double closing = d.dot(w);
+    // closing - |closing| is 2 min(0, closing), without a branch that every other pair would take.
     const double nearest =
-        (1.0 - kNearRounding) * d.squaredNorm() + 2.0 * flights_.step_s() * std::min(0.0, d.dot(w));
+        (1.0 - kNearRounding) * d.squaredNorm() + flights_.step_s() * (closing - std::abs(closing));
     return !(nearest > (1.0 + kNearRounding) * (sum * sum));
   }
 
