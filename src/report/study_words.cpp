@@ -15,7 +15,7 @@ std::string words_of(const Series& series) {
 }
 
 std::string words_of(const StudyScene& scene, const StudyPoint& point) {
-  const std::string words = words_of(Series{point.engine, point.setting, {}});
+  std::string words = words_of(Series{point.engine, point.setting, {}});
   const auto engine = std::find_if(scene.engines.begin(), scene.engines.end(),
                                    [&](const StudyEngine& each) { return each.label == point.engine; });
   if (engine != scene.engines.end() && !engine->takes_steps) return words;

@@ -83,7 +83,7 @@ class SceneStudy {
     for (PlannedPoint& each : plan_scene(*scene_, engines, answers)) {
       const auto known = std::find_if(before.begin(), before.end(),
                                       [&](const StudyPoint& point) { return is_same(point, each.point); });
-      into_.points.push_back(known == before.end() ? std::move(each.point) : *known);
+      into_.points.push_back(known == before.end() ? each.point : *known);
       choices_.push_back(std::move(each.choice));
     }
   }

@@ -75,6 +75,7 @@ PlannedPoint planned(const Scenario& scene, const EngineChoice& engine, std::int
 
 std::vector<std::int64_t> study_steps() {
   std::vector<std::int64_t> steps;
+  steps.reserve(kStepValues);
   for (int i = 0; i < kStepValues; ++i) {
     steps.push_back(std::llround(std::pow(10.0, kDecades * i / (kStepValues - 1))));
   }

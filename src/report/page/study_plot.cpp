@@ -68,6 +68,7 @@ Polyline staircase(const Canvas& canvas, const std::vector<Mark>& front) {
 
 std::string front_in_words(const StudyScene& scene, const std::vector<Mark>& front) {
   std::vector<std::string> words;
+  words.reserve(front.size());
   for (const Mark& mark : front) words.push_back(description(scene, mark));
   return "The front: " + list_of(words) + ".";
 }
