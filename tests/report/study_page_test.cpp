@@ -92,7 +92,8 @@ TEST(StudyPage, IsWellFormed_AndOfItself) {
 TEST(StudyPage, IsAChapterOfTheReport_WhereThereIsAStudy) {
   const std::filesystem::path web = std::filesystem::path(CAROM_SOURCE_DIR) / "reports/web";
   const Study study = some_study();
-  EXPECT_THAT(render_page({}, web, {}, &study), AllOf(HasSubstr("href=\"#study\""), HasSubstr("id=\"study\"")));
+  EXPECT_THAT(render_page({}, web, {}, &study),
+              AllOf(HasSubstr("href=\"#study\""), HasSubstr("id=\"study\"")));
   EXPECT_THAT(render_page({}, web), AllOf(Not(HasSubstr("href=\"#study\"")), Not(HasSubstr("id=\"study\""))));
 }
 
