@@ -18,7 +18,7 @@ struct Machine {
   std::string cpu;
   int cores = 1;
   std::string compiler;
-  std::string build;  ///< CMake's build type
+  std::string build;       ///< CMake's build type
   std::string flags = {};  ///< of the compiler, beside those that every build has
 };
 

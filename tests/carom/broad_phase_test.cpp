@@ -27,8 +27,9 @@ struct In {
 
 template <class CaseType>
 class BroadPhaseTwin : public testing::Test {};
-using Cases = testing::Types<In<UniformGrid, 2>, In<UniformGrid, 3>, In<Tree, 2>, In<Tree, 3>,
-                             In<SortAndSweep, 2>, In<SortAndSweep, 3>, In<WrappedGrid, 2>, In<WrappedGrid, 3>>;
+using Cases =
+    testing::Types<In<UniformGrid, 2>, In<UniformGrid, 3>, In<Tree, 2>, In<Tree, 3>, In<SortAndSweep, 2>,
+                   In<SortAndSweep, 3>, In<WrappedGrid, 2>, In<WrappedGrid, 3>>;
 TYPED_TEST_SUITE(BroadPhaseTwin, Cases);
 
 template <int Dim>

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kOrder = {"core",       "scenario",   "engine", "carom",
-                                         "trajectory", "comparison", "study", "report", "lab", "app"};
+const std::vector<std::string> kOrder = {"core",       "scenario", "engine", "carom", "trajectory",
+                                         "comparison", "study",    "report", "lab",   "app"};
 
 /// What reference engines and oracles may include of ours: a scene comes in, states go out, nothing is shared
 /// with what they judge.

@@ -18,7 +18,7 @@ struct Parts {
   std::unique_ptr<Flight<Dim>> flight;           ///< null: balls fly straight on
   std::unique_ptr<ClusterLaw<Dim>> cluster_law;  ///< null: sequential
   PairSkin skin = PairSkin::kChosen;
-  std::shared_ptr<LawFormula> law = nullptr;     ///< of a law from a file; null: the law is compiled in
+  std::shared_ptr<LawFormula> law = nullptr;  ///< of a law from a file; null: the law is compiled in
 };
 
 /// The law that an evolver was compiled with. One that is known at compile time is empty and costs nothing.
