@@ -27,7 +27,7 @@ struct Measured {
 
 // --- pairs
 
-Vec3 random_vector(Random& random) {
+Vec3 vector_in_cube(Random& random) {
   return {random.normal(), random.normal(), random.normal()};
 }
 
@@ -36,8 +36,8 @@ PairBall random_ball(Random& random) {
   ball.mass = std::pow(10.0, random.uniform(-2.0, 2.0));
   ball.radius = std::pow(10.0, random.uniform(-0.5, 0.5));
   ball.inertia = random.uniform(0.2, 0.7) * ball.mass * ball.radius * ball.radius;
-  ball.velocity = random_vector(random);
-  ball.spin = random_vector(random) / ball.radius;
+  ball.velocity = vector_in_cube(random);
+  ball.spin = vector_in_cube(random) / ball.radius;
   return ball;
 }
 
@@ -54,7 +54,7 @@ PairMeeting random_pair(Random& random) {
   // Where they hardly approach, rounding of the other speeds would drown what is asked.
   constexpr double kAtLeast = 0.05;
   while (true) {
-    PairMeeting pair{random_ball(random), random_ball(random), random_vector(random).normalized(), {}};
+    PairMeeting pair{random_ball(random), random_ball(random), vector_in_cube(random).normalized(), {}};
     pair.surface = {random.uniform(), random.uniform(), random.uniform(-1.0, 1.0)};
     if (approach_of(pair) < 0.0) pair.normal = -pair.normal;
     if (approach_of(pair) > kAtLeast * speeds_of(pair)) return pair;
@@ -144,9 +144,9 @@ PairMeeting rescaled(PairMeeting pair, double kg, double m, double s) {
 // --- the rules
 
 /// One pair, and what the law makes of it.
-class Trial {
+class PairTrial {
  public:
-  Trial(const PairMeeting& pair, const PairLaw& law)
+  PairTrial(const PairMeeting& pair, const PairLaw& law)
       : pair_(pair), law_(law), impulses_(law(pair)), after_(carom::after(pair, impulses_)) {}
 
   bool is_finite() const { return impulses_.on_one.allFinite() && impulses_.on_two.allFinite(); }
@@ -299,7 +299,7 @@ LawReport examine_law(const LawFile& about, const PairLaw& law, std::int64_t pai
   Random random(seed);
   for (std::int64_t k = 0; k < pairs; ++k) {
     const PairMeeting pair = random_pair(random);
-    const Trial trial(pair, law);
+    const PairTrial trial(pair, law);
     if (!trial.is_finite()) {
       ++report.not_finite;
       continue;

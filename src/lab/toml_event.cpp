@@ -11,17 +11,15 @@ namespace carom {
 
 namespace {
 
-using Json = nlohmann::json;
-
 /// A bare key as it is, any other in quotes.
 std::string toml_key(const std::string& key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return bare ? key : Json(key).dump();
+  return bare ? key : nlohmann::json(key).dump();
 }
 
-std::string toml_value(const Json& value) {
+std::string toml_value(const nlohmann::json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
   if (value.is_number()) return fmt::format("{}", value.get<double>());
@@ -30,7 +28,7 @@ std::string toml_value(const Json& value) {
   if (value.is_string()) return value.dump();  // TOML's escapes are JSON's
   std::string text;
   if (value.is_array()) {
-    for (const Json& element : value) text += (text.empty() ? "" : ", ") + toml_value(element);
+    for (const nlohmann::json& element : value) text += (text.empty() ? "" : ", ") + toml_value(element);
     return "[" + text + "]";
   }
   if (!value.is_object()) throw InputError("event: found null, allowed: the keys and values of an [[event]]");
@@ -42,7 +40,7 @@ std::string toml_value(const Json& value) {
 
 }  // namespace
 
-std::string with_event(std::string toml, const Json& event) {
+std::string with_event(std::string toml, const nlohmann::json& event) {
   if (!event.is_object()) {
     throw InputError("event: allowed: an object with the keys and values of an [[event]]");
   }

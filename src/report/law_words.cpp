@@ -33,7 +33,7 @@ std::string expressions(const LawFile& law) {
   return lines;
 }
 
-Json vector(const Vec3& v) {
+Json components(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
@@ -41,14 +41,14 @@ Json ball_json(const PairBall& ball) {
   return {{"mass", ball.mass},
           {"radius", ball.radius},
           {"inertia", number_or_null(ball.inertia)},
-          {"velocity", vector(ball.velocity)},
-          {"spin", vector(ball.spin)}};
+          {"velocity", components(ball.velocity)},
+          {"spin", components(ball.spin)}};
 }
 
 Json pair_json(const PairMeeting& pair) {
   return {
       {"one", ball_json(pair.one)},        {"two", ball_json(pair.two)},
-      {"normal", vector(pair.normal)},     {"restitution", pair.surface.restitution},
+      {"normal", components(pair.normal)}, {"restitution", pair.surface.restitution},
       {"friction", pair.surface.friction}, {"tangential_restitution", pair.surface.tangential_restitution}};
 }
 

@@ -11,7 +11,7 @@ namespace carom {
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr int kStepValues = 9;
 constexpr double kDecades = 3.0;

@@ -11,6 +11,6 @@ namespace carom {
 /// The evolver `toi` under a law from a file (laws/written_law.h).
 template <int Dim>
 std::unique_ptr<Simulation> make_toi_written(const Scenario& scene, Parts<Dim> parts,
-                                             std::shared_ptr<LawFormula> law);
+                                             const std::shared_ptr<LawFormula>& law);
 
 }  // namespace carom

@@ -3,6 +3,6 @@
 namespace carom {
 
 template std::unique_ptr<Simulation> make_toi_written<3>(const Scenario&, Parts<3>,
-                                                         std::shared_ptr<LawFormula>);
+                                                         const std::shared_ptr<LawFormula>&);
 
 }  // namespace carom

@@ -11,9 +11,9 @@ namespace carom {
 
 template <int Dim>
 std::unique_ptr<Simulation> make_toi_written(const Scenario& scene, Parts<Dim> parts,
-                                             std::shared_ptr<LawFormula> law) {
+                                             const std::shared_ptr<LawFormula>& law) {
   const bool rough = has_friction(scene) || law->file().has_tangential();
-  parts.law = std::move(law);
+  parts.law = law;
   const bool accelerates = parts.flight != nullptr;
   if (rough && accelerates)
     return detail::with_law<Dim, true, WrittenLaw<true>, ToiEvolver>(scene, std::move(parts));

@@ -14,13 +14,13 @@ namespace carom::page {
 
 namespace {
 
-constexpr double kWidth_px = 180.0;
-constexpr double kHeight_px = 16.0;
-constexpr double kEdge_px = 7.0;     // beside the widest bar, for an arrowhead
-constexpr double kTop_px = 2.0;      // of a part
-constexpr double kThick_px = 12.0;   // of a part
-constexpr double kVisible_px = 0.3;  // less is not drawn
-constexpr double kStripes_px = 5.0;  // from one stripe to the next
+constexpr double kBarWidth_px = 180.0;
+constexpr double kBarHeight_px = 16.0;
+constexpr double kEdge_px = 7.0;         // beside the widest bar, for an arrowhead
+constexpr double kTop_px = 2.0;          // of a part
+constexpr double kThick_px = 12.0;       // of a part
+constexpr double kVisiblePart_px = 0.3;  // less is not drawn
+constexpr double kStripes_px = 5.0;      // from one stripe to the next
 
 struct Look {
   const char* colour_class;  ///< in page.css; hollow for an outline
@@ -51,7 +51,7 @@ std::string stripes(const Look& look, double left, double width) {
 void draw_part(Node svg, std::size_t look, double from, double to) {
   const double left = std::min(from, to);
   const double width = std::abs(to - from);
-  if (width < kVisible_px) return;
+  if (width < kVisiblePart_px) return;
   add(svg, "rect",
       {{"class", std::string("part ") + kLooks.at(look).colour_class},
        {"x", px(left)},
@@ -108,17 +108,17 @@ void add_bar(Node parent, const std::string& title, const std::vector<BarPart>& 
              const BarRange& range) {
   Node svg = add(parent, "svg",
                  {{"class", "bar"},
-                  {"viewBox", fmt::format("0 0 {} {}", px(kWidth_px), px(kHeight_px))},
+                  {"viewBox", fmt::format("0 0 {} {}", px(kBarWidth_px), px(kBarHeight_px))},
                   {"role", "img"}});
   add(svg, "title", {}, title);
   const std::string words = words_of(parts, -1.0, "Lost") + words_of(parts, 1.0, "Gained");
   add(svg, "desc", {}, words.empty() ? "Nothing that can be seen." : words);
   const double extent = range.lost + range.gained;
-  const double scale_px = extent > 0.0 ? (kWidth_px - 2.0 * kEdge_px) / extent : 0.0;
+  const double scale_px = extent > 0.0 ? (kBarWidth_px - 2.0 * kEdge_px) / extent : 0.0;
   const double zero_px = kEdge_px + scale_px * range.lost;
   draw_side(svg, parts, -1.0, range.lost, zero_px, scale_px);
   draw_side(svg, parts, 1.0, range.gained, zero_px, scale_px);
-  add(svg, "path", {{"class", "zero"}, {"d", fmt::format("M{} 0v{}", px(zero_px), px(kHeight_px))}});
+  add(svg, "path", {{"class", "zero"}, {"d", fmt::format("M{} 0v{}", px(zero_px), px(kBarHeight_px))}});
 }
 
 void add_bar_swatch(Node parent, std::size_t look) {

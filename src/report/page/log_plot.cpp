@@ -13,8 +13,8 @@ namespace carom::page {
 
 namespace {
 
-constexpr double kWidth_px = 330.0;
-constexpr double kHeight_px = 220.0;
+constexpr double kLogPlotWidth_px = 330.0;
+constexpr double kLogPlotHeight_px = 220.0;
 constexpr int kBallTicks = 4;
 constexpr int kQuantityTicks = 10;
 
@@ -66,10 +66,10 @@ void add_log_plot(Node parent, const std::string& title, const std::string& quan
   Node figure = add(parent, "figure");
   add(add(figure, "figcaption"), "strong", {}, title + ".");
   add_key(figure, power_lines);
-  const Canvas canvas =
-      add_canvas(figure, {title, "The numbers are in the table."}, axis_over(lines, &Point::x),
-                 axis_over(lines, &Point::y), kWidth_px, kHeight_px, {kBallTicks, "balls, as a power of ten"},
-                 {kQuantityTicks, quantity + ", as a power of ten"});
+  const Canvas canvas = add_canvas(figure, {title, "The numbers are in the table."},
+                                   axis_over(lines, &Point::x), axis_over(lines, &Point::y), kLogPlotWidth_px,
+                                   kLogPlotHeight_px, {kBallTicks, "balls, as a power of ten"},
+                                   {kQuantityTicks, quantity + ", as a power of ten"});
   for (std::size_t i = 0; i < lines.size(); ++i) {
     Polyline drawn;
     for (const Point& point : lines[i]) drawn.push_back(canvas.at(point.x, point.y));

@@ -83,7 +83,7 @@ void add_result(Node parent, const Results& results, const Legend& legend) {
   add_violations(box, results);
 }
 
-void add_key(Node parent) {
+void add_signs(Node parent) {
   Node list = add(parent, "ul", {{"class", "key"}, {"aria-label", "Meaning of the verdicts"}});
   for (const VerdictMeaning& row : kVerdicts) {
     Node item = add(list, "li");
@@ -183,7 +183,7 @@ void add_overview(Node parent, const Results& results, const Legend& legend) {
       "truth, the largest change of energy, ΔE, as a share of the energy at the start; where a gate is "
       "broken, "
       "what broke it.");
-  add_key(overview);
+  add_signs(overview);
   add(overview, "div", {{"id", "filter"}});
   add_matrix(overview, results, legend);
   add_missing(overview, results);

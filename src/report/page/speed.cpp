@@ -117,7 +117,7 @@ void add_costs_plot(Node parent, const std::string& title, const Costs& costs) {
   add_log_plot(parent, title, "ns", lines);
 }
 
-void add_all(Node section, const Json& speed) {
+void add_goals_and_growth(Node section, const Json& speed) {
   const Json& machine = speed.at("machine");
   add(section, "p", {{"class", "about"}},
       fmt::format(
@@ -156,7 +156,7 @@ void add_speed(Node parent, const std::filesystem::path& file) {
   Node section = add(parent, "section", {{"id", "speed"}, {"aria-labelledby", "speed-title"}});
   add(section, "h2", {{"id", "speed-title"}}, "How fast");
   try {
-    add_all(section, Json::parse(read_file(file)));
+    add_goals_and_growth(section, Json::parse(read_file(file)));
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: {}; tests/benchmarks/run writes it anew", file.string(), error.what()));
   }

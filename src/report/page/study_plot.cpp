@@ -15,11 +15,11 @@ namespace carom::page {
 
 namespace {
 
-constexpr double kWidth_px = 620.0;
-constexpr double kHeight_px = 330.0;
+constexpr double kStudyWidth_px = 620.0;
+constexpr double kStudyHeight_px = 330.0;
 constexpr double kGrowthWidth_px = 330.0;
 constexpr double kGrowthHeight_px = 220.0;
-constexpr int kTicks = 9;
+constexpr int kStudyTicks = 9;
 constexpr int kGrowthTicks = 6;
 
 /// The least and the largest of what is put in.
@@ -49,15 +49,15 @@ void draw_marker(const Canvas& canvas, const LineStyle& style, const Point& at, 
   add(path, "title", {}, what);
 }
 
-std::string description(const StudyScene& scene, const Mark& mark) {
+std::string description(const StudyScene& scene, const carom::Mark& mark) {
   return fmt::format("{}: {} {} in {}", words_of(scene, scene.points[mark.point]), number(mark.error),
                      unit_of(scene), time_words(mark.cpu_s.median));
 }
 
 /// Down where a run is better than all that are faster, and on to the right until one is.
-Polyline staircase(const Canvas& canvas, const std::vector<Mark>& front) {
+Polyline staircase(const Canvas& canvas, const std::vector<carom::Mark>& front) {
   Polyline line;
-  for (const Mark& mark : front) {
+  for (const carom::Mark& mark : front) {
     const Point at = canvas.at(mark.cpu_s.median, mark.error);
     if (!line.empty()) line.push_back({at.x, line.back().y});
     line.push_back(at);
@@ -66,10 +66,10 @@ Polyline staircase(const Canvas& canvas, const std::vector<Mark>& front) {
   return line;
 }
 
-std::string front_in_words(const StudyScene& scene, const std::vector<Mark>& front) {
+std::string front_in_words(const StudyScene& scene, const std::vector<carom::Mark>& front) {
   std::vector<std::string> words;
   words.reserve(front.size());
-  for (const Mark& mark : front) words.push_back(description(scene, mark));
+  for (const carom::Mark& mark : front) words.push_back(description(scene, mark));
   return "The front: " + list_of(words) + ".";
 }
 
@@ -90,10 +90,10 @@ void add_key(Node parent, const std::vector<std::string>& labels, const Legend& 
   }
 }
 
-std::vector<std::string> labels_of(const StudyScene& scene, const std::vector<Mark>& marks) {
+std::vector<std::string> labels_of(const StudyScene& scene, const std::vector<carom::Mark>& marks) {
   std::vector<std::string> labels;
   for (const StudyEngine& engine : scene.engines) {
-    const bool drawn = std::any_of(marks.begin(), marks.end(), [&](const Mark& mark) {
+    const bool drawn = std::any_of(marks.begin(), marks.end(), [&](const carom::Mark& mark) {
       return scene.points[mark.point].engine == engine.label;
     });
     if (drawn) labels.push_back(engine.label);
@@ -104,12 +104,12 @@ std::vector<std::string> labels_of(const StudyScene& scene, const std::vector<Ma
 }  // namespace
 
 void add_work_precision(Node parent, const StudyScene& scene, const Legend& legend) {
-  const std::vector<Mark> marks = marks_of(scene);
-  const std::vector<Mark> front = front_of(marks);
+  const std::vector<carom::Mark> marks = marks_of(scene);
+  const std::vector<carom::Mark> front = front_of(marks);
   Range times;
   Range errors;
   errors.take(floor_of(scene) * 0.5);  // room below it
-  for (const Mark& mark : marks) {
+  for (const carom::Mark& mark : marks) {
     times.take(mark.cpu_s.median);
     errors.take(mark.error);
   }
@@ -119,9 +119,10 @@ void add_work_precision(Node parent, const StudyScene& scene, const Legend& lege
   add(add(figure, "figcaption"), "strong", {},
       "Work and precision: the lower and the further left, the better.");
   add_key(figure, labels_of(scene, marks), legend);
-  const Canvas canvas = add_canvas(
-      figure, {"Error over CPU time, " + scene.title, front_in_words(scene, front)}, times.axis(),
-      errors.axis(), kWidth_px, kHeight_px, {kTicks, "CPU time of the stepping, s"}, {kTicks, quantity});
+  const Canvas canvas =
+      add_canvas(figure, {"Error over CPU time, " + scene.title, front_in_words(scene, front)}, times.axis(),
+                 errors.axis(), kStudyWidth_px, kStudyHeight_px, {kStudyTicks, "CPU time of the stepping, s"},
+                 {kStudyTicks, quantity});
   add(canvas.area, "path", {{"class", "truth"}, {"d", path_data(staircase(canvas, front))}});
   draw_floor(canvas, scene);
   for (const Series& series : series_of(scene)) {
@@ -129,12 +130,12 @@ void add_work_precision(Node parent, const StudyScene& scene, const Legend& lege
     Polyline line;
     for (const std::size_t i : series.points) {
       const auto mark =
-          std::find_if(marks.begin(), marks.end(), [i](const Mark& each) { return each.point == i; });
+          std::find_if(marks.begin(), marks.end(), [i](const carom::Mark& each) { return each.point == i; });
       if (mark != marks.end()) line.push_back(canvas.at(mark->cpu_s.median, mark->error));
     }
     if (series.setting.empty()) draw_line(canvas, style, line);
   }
-  for (const Mark& mark : marks) {
+  for (const carom::Mark& mark : marks) {
     const StudyPoint& point = scene.points[mark.point];
     draw_marker(canvas, legend.style(point.engine), canvas.at(mark.cpu_s.median, mark.error),
                 !point.setting.empty(), description(scene, mark));

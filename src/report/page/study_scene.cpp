@@ -44,14 +44,14 @@ void add_leads(Node parent, const StudyScene& scene, const std::string& own) {
   for (const Lead& lead : leads) add(list, "li", {}, words_of(scene, own, lead));
 }
 
-void add_cheapest(Node parent, const StudyScene& scene, const std::vector<Mark>& marks) {
+void add_cheapest(Node parent, const StudyScene& scene, const std::vector<carom::Mark>& marks) {
   Node body = add_table(
       parent, "gates", "The cheapest setting of all for an error of at most …",
       {{unit_of(scene), "number"}, {"setting", ""}, {"CPU time (quartiles)", "number"}, {"error", "number"}});
   for (const double tolerance : kTolerances) {
     Node row = add(body, "tr");
     add(row, "th", {{"scope", "row"}}, given(tolerance));
-    const std::optional<Mark> mark = cheapest(marks, tolerance);
+    const std::optional<carom::Mark> mark = cheapest(marks, tolerance);
     add(row, "td", {}, mark ? words_of(scene, scene.points[mark->point]) : "none is as good");
     add_number(row, mark ? spread_words(mark->cpu_s) : "–");
     add_number(row, mark ? number(mark->error) : "–");
@@ -70,16 +70,17 @@ std::optional<double> least(const StudyScene& scene, const Series& series,
   return result;
 }
 
-std::optional<double> best_error(const std::vector<Mark>& marks, const Series& series) {
+std::optional<double> best_error(const std::vector<carom::Mark>& marks, const Series& series) {
   std::optional<double> best;
-  for (const Mark& mark : marks) {
+  for (const carom::Mark& mark : marks) {
     const bool own = std::find(series.points.begin(), series.points.end(), mark.point) != series.points.end();
     if (own && (!best || mark.error < *best)) best = mark.error;
   }
   return best;
 }
 
-void add_series(Node parent, const StudyScene& scene, const std::vector<Mark>& marks, const Legend& legend) {
+void add_series(Node parent, const StudyScene& scene, const std::vector<carom::Mark>& marks,
+                const Legend& legend) {
   Node body = add_table(parent, "measured", "How errors fall with the step, and what that costs",
                         {{"engine and setting", ""},
                          {"p claimed", "number"},
@@ -128,7 +129,7 @@ void add_point(Node body, const StudyScene& scene, const StudyPoint& point, bool
   add_number(row, on_front ? "●" : "");
 }
 
-void add_points(Node parent, const StudyScene& scene, const std::vector<Mark>& marks) {
+void add_points(Node parent, const StudyScene& scene, const std::vector<carom::Mark>& marks) {
   Node box = add_details(parent, fmt::format("Every run of {}", scene.id));
   Node body = add_table(box, "measured", "Every run, coarse steps first",
                         {{"engine, setting and step", ""},
@@ -140,10 +141,10 @@ void add_points(Node parent, const StudyScene& scene, const std::vector<Mark>& m
                          {"angular momentum", "number"},
                          {"impact time, s", "number"},
                          {"on the front", "number"}});
-  const std::vector<Mark> front = front_of(marks);
+  const std::vector<carom::Mark> front = front_of(marks);
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
     const bool on_front =
-        std::any_of(front.begin(), front.end(), [i](const Mark& mark) { return mark.point == i; });
+        std::any_of(front.begin(), front.end(), [i](const carom::Mark& mark) { return mark.point == i; });
     add_point(body, scene, scene.points[i], on_front);
   }
 }
@@ -161,7 +162,7 @@ void add_study_scene(Node parent, const StudyScene& scene, const std::string& ow
   add(parent, "p", {{"class", "id"}},
       fmt::format("{}. {} in dimension {} for {} s. {}", scene.id, count_of(scene.balls, "ball"),
                   scene.dimension, given(scene.duration_s), truth_of(scene)));
-  const std::vector<Mark> marks = marks_of(scene);
+  const std::vector<carom::Mark> marks = marks_of(scene);
   if (!marks.empty()) {
     add_work_precision(parent, scene, legend);
     add_leads(parent, scene, own);

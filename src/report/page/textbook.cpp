@@ -12,7 +12,7 @@ namespace carom::page {
 
 namespace {
 
-std::string percent(double share) {
+std::string hundredths(double share) {
   return number(100.0 * share) + " %";
 }
 
@@ -114,10 +114,10 @@ void add_shift(Node parent, const TextbookFindings& findings) {
                          {"centre of mass moved (m₂ = 100 m₁), in overlaps", "number"}});
   for (const ShiftMeasured& shift : findings.shifts) {
     Node line = add(body, "tr");
-    add(line, "th", {{"scope", "row"}, {"class", "number"}}, percent(shift.overlap));
+    add(line, "th", {{"scope", "row"}, {"class", "number"}}, hundredths(shift.overlap));
     add_number(line, number(shift.first));
     add_number(line, number(shift.second));
-    add_number(line, percent(shift.gap));
+    add_number(line, hundredths(shift.gap));
     add_number(line, number(shift.centre_of_mass));
   }
   add(parent, "p", {},
@@ -145,9 +145,9 @@ void add_drops(Node parent, const std::vector<DropMeasured>& drops) {
   for (const DropMeasured& drop : drops) {
     Node line = add(body, "tr");
     add(line, "th", {{"scope", "row"}, {"class", "number"}}, fmt::format("{}", drop.rate_hz));
-    add_number(line, percent(drop.energy));
-    add_number(line, percent(drop.correction));
-    add_number(line, percent(drop.flight));
+    add_number(line, hundredths(drop.energy));
+    add_number(line, hundredths(drop.correction));
+    add_number(line, hundredths(drop.flight));
   }
 }
 
@@ -211,8 +211,8 @@ void add_rates(Node parent, const std::vector<RateMeasured>& rates) {
     Node line = add(body, "tr");
     add(line, "th", {{"scope", "row"}, {"class", "number"}}, fmt::format("{}", rate.rate_hz));
     add_number(line, number(rate.speed_mps));
-    add_number(line, percent(rate.unseen));
-    add_number(line, percent(rate.unseen_by_formula));
+    add_number(line, hundredths(rate.unseen));
+    add_number(line, hundredths(rate.unseen_by_formula));
     add_number(line, number(rate.late_s));
   }
 }
