@@ -46,7 +46,7 @@ TEST(TextbookImpulse, IsTheElasticLaw_ToSinglePrecision_AnyPair) {
     Ball b = ball(random.uniform(0.1, 10.0), random.uniform(0.2, 1.0), Vec3::Zero(),
                   {random.normal(), random.normal(), random.normal()});
     b.position = 0.9 * (a.radius + b.radius) * direction - b.velocity + a.velocity;
-    const Vec3 n = direction;
+    const Vec3& n = direction;
     const double v_n = n.dot(b.velocity - a.velocity);
     const std::vector<ProgramBall> after = updated(3, {a, b}).balls();
     const double j = v_n < 0.0 ? -2.0 * v_n / (1.0 / a.mass + 1.0 / b.mass) : 0.0;

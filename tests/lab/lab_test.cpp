@@ -68,6 +68,7 @@ class Program {
     posix_spawn_file_actions_adddup2(&files, ends[1], STDERR_FILENO);
     words.insert(words.begin(), CAROM_PROGRAM);
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     EXPECT_EQ(posix_spawn(&pid_, CAROM_PROGRAM, &files, nullptr, pointers.data(), environ), 0);
@@ -378,8 +379,10 @@ TEST_F(Lab, ThePage_IsServedByTheNamesOfItsFiles) {
 TEST_F(Lab, ManyRequestsAtOnce_AreAnsweredOrToldToWait) {
   std::atomic<int> done = 0;
   std::atomic<int> waiting = 0;
+  constexpr int kRequests = 14;
   std::vector<std::thread> threads;
-  for (int i = 0; i < 14; ++i) {
+  threads.reserve(kRequests);
+  for (int i = 0; i < kRequests; ++i) {
     threads.emplace_back([&] {
       httplib::Client own = client();
       const httplib::Result result =
@@ -389,7 +392,7 @@ TEST_F(Lab, ManyRequestsAtOnce_AreAnsweredOrToldToWait) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(done + waiting, 14);
+  EXPECT_EQ(done + waiting, kRequests);
   EXPECT_GE(done, 1);
   EXPECT_EQ(get("/api/engines").status, 200);
 }

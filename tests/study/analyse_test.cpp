@@ -44,6 +44,7 @@ StudyScene scene_of(std::vector<StudyPoint> points) {
 
 std::vector<std::size_t> indices(const std::vector<Mark>& marks) {
   std::vector<std::size_t> result;
+  result.reserve(marks.size());
   for (const Mark& mark : marks) result.push_back(mark.point);
   return result;
 }
