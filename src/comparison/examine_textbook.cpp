@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "carom/textbook/program.h"
-#include "core/random.h"
+#include "comparison/random_vector.h"
 
 namespace carom {
 
@@ -46,10 +46,6 @@ Vec3 velocity_of(const Program& program, std::size_t ball) {
 
 double random_mass(Random& random) {
   return std::pow(10.0, random.uniform(-1.0, 1.0));
-}
-
-Vec3 random_vector(Random& random) {
-  return {random.normal(), random.normal(), random.normal()};
 }
 
 // --- the impulse

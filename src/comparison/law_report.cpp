@@ -7,7 +7,7 @@
 
 #include "carom/laws/law_formula.h"
 #include "carom/laws/three_parameter.h"
-#include "core/random.h"
+#include "comparison/random_vector.h"
 
 namespace carom {
 
@@ -27,17 +27,13 @@ struct Measured {
 
 // --- pairs
 
-Vec3 vector_in_cube(Random& random) {
-  return {random.normal(), random.normal(), random.normal()};
-}
-
 PairBall random_ball(Random& random) {
   PairBall ball;
   ball.mass = std::pow(10.0, random.uniform(-2.0, 2.0));
   ball.radius = std::pow(10.0, random.uniform(-0.5, 0.5));
   ball.inertia = random.uniform(0.2, 0.7) * ball.mass * ball.radius * ball.radius;
-  ball.velocity = vector_in_cube(random);
-  ball.spin = vector_in_cube(random) / ball.radius;
+  ball.velocity = random_vector(random);
+  ball.spin = random_vector(random) / ball.radius;
   return ball;
 }
 
@@ -54,7 +50,7 @@ PairMeeting random_pair(Random& random) {
   // Where they hardly approach, rounding of the other speeds would drown what is asked.
   constexpr double kAtLeast = 0.05;
   while (true) {
-    PairMeeting pair{random_ball(random), random_ball(random), vector_in_cube(random).normalized(), {}};
+    PairMeeting pair{random_ball(random), random_ball(random), random_vector(random).normalized(), {}};
     pair.surface = {random.uniform(), random.uniform(), random.uniform(-1.0, 1.0)};
     if (approach_of(pair) < 0.0) pair.normal = -pair.normal;
     if (approach_of(pair) > kAtLeast * speeds_of(pair)) return pair;
