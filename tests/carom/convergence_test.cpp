@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carom/compose.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
 // By which power of the step the errors fall, measured. Each order is the slope of log error on log step by
@@ -13,8 +14,6 @@
 
 namespace carom::test {
 namespace {
-
-constexpr double kGravity = 9.81;  // m/s²
 
 /// An error is C hᵖ (1 + D h + …). With the longest step h the next term bends a slope over five halvings by
 /// about D h/ln 32, and steps are chosen such that D h is below a half: the slope is off by 0.15 at most, and

@@ -11,14 +11,13 @@
 
 #include "carom/compose.h"
 #include "carom/effects/barrier.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
 // What stands in a ball's way: slabs, quantum barriers, and floors that are rough.
 
 namespace carom::test {
 namespace {
-
-constexpr double kGravity = 9.81;  // m/s²
 
 Ball ball_at(const Vec3& position, const Vec3& velocity, double radius = 0.01) {
   Ball ball;

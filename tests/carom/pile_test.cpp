@@ -7,6 +7,7 @@
 
 #include "carom/broad_phase/list.h"
 #include "carom/compose.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
 namespace carom::test {
@@ -79,7 +80,7 @@ TEST_P(FormingPile, GainsNoEnergyInAnyStep_AndOverlapsByNoMoreThanStated) {
   const auto simulation = compose(*scene, {"toi", ""});
   double last = energy_of(*scene, states_of(*scene));
   const double scale = last;
-  for (int k = 0; k < 300; ++k) {
+  for (int k = 0; k < 300 / kPart; ++k) {
     simulation->advance(scene->step_s, 1);
     const auto states = states_of(*simulation, scene->balls.size());
     // A rebound that is left out leaves a ball up to kRestShare² g h²/8 = 3e-11 m too high, of 1 m.
@@ -92,9 +93,9 @@ TEST_P(FormingPile, GainsNoEnergyInAnyStep_AndOverlapsByNoMoreThanStated) {
 
 TEST_P(FormingPile, IsTheSameBits_WithEveryBroadPhase) {
   const ScenarioPtr scene = pour(GetParam().dimension, 24, GetParam().friction);
-  const auto first = run(*compose(*scene, {"toi", "brute-force"}), *scene, 200);
+  const auto first = run(*compose(*scene, {"toi", "brute-force"}), *scene, 200 / kPart);
   for (const std::string_view broad_phase : broad_phase_names(GetParam().dimension)) {
-    const auto again = run(*compose(*scene, {"toi", std::string(broad_phase)}), *scene, 200);
+    const auto again = run(*compose(*scene, {"toi", std::string(broad_phase)}), *scene, 200 / kPart);
     for (std::size_t i = 0; i < first.size(); ++i) {
       ASSERT_EQ(first[i].position, again[i].position) << broad_phase << ", ball " << i;
       ASSERT_EQ(first[i].velocity, again[i].velocity) << broad_phase << ", ball " << i;

@@ -1,16 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string_view>
 
 #include "carom/compose.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
 namespace carom::test {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// How often a ball that starts at x with the velocity v meets the sides of its way of length l in a time t:
 /// unfolded, how many multiples of l lie on its straight way.

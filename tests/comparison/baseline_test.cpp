@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "comparison/baseline_file.h"
 #include "core/random.h"
+#include "tests/support/numbers.h"
 
 namespace carom::test {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
 /// One ball of 1 kg, 10 steps, no impact: 11 updates of ten operations, ε √(3 · 110) of what is rounded.
-const double kRounding = kEpsilon * std::sqrt(330.0);
+const double kSumRounding = kEpsilon * std::sqrt(330.0);
 
 Results measured(std::optional<double> energy, std::optional<double> escaped = std::nullopt) {
   auto scene = std::make_shared<Scenario>();
@@ -64,8 +62,8 @@ TEST(Baseline, WorseByMoreThanTheFactor_DoesNotHold) {
 TEST(Baseline, RoundingIsNoRegression_AndWhatIsAboveItIs) {
   for (const double was : {0.0, 1e-17, 1e-16}) {
     EXPECT_TRUE(holds(was, 2e-16));
-    EXPECT_TRUE(holds(was, 1.9 * kRounding));
-    EXPECT_FALSE(holds(was, 2.1 * kRounding));
+    EXPECT_TRUE(holds(was, 1.9 * kSumRounding));
+    EXPECT_FALSE(holds(was, 2.1 * kSumRounding));
   }
 }
 
@@ -81,15 +79,15 @@ TEST(Baseline, RoundingFloor_IsThatOfTheLargestNumberByTheScale) {
   const auto floor = [&](Metric metric) { return rounding_floor(scene, run, metric); };
   // The ball is at y = 3 m and moves at 1 m/s for 2 s: 5 m; its radius is 0.5 m. It is its own centre of
   // mass, so angular momentum is by 0.5 m of the momentum.
-  EXPECT_DOUBLE_EQ(floor(Metric::energy), kRounding);
-  EXPECT_DOUBLE_EQ(floor(Metric::momentum), kRounding);
-  EXPECT_DOUBLE_EQ(floor(Metric::position), 5.0 * kRounding);
-  EXPECT_DOUBLE_EQ(floor(Metric::penetration), 10.0 * kRounding);
-  EXPECT_DOUBLE_EQ(floor(Metric::angular_momentum), 10.0 * kRounding);
+  EXPECT_DOUBLE_EQ(floor(Metric::energy), kSumRounding);
+  EXPECT_DOUBLE_EQ(floor(Metric::momentum), kSumRounding);
+  EXPECT_DOUBLE_EQ(floor(Metric::position), 5.0 * kSumRounding);
+  EXPECT_DOUBLE_EQ(floor(Metric::penetration), 10.0 * kSumRounding);
+  EXPECT_DOUBLE_EQ(floor(Metric::angular_momentum), 10.0 * kSumRounding);
   scene.truth.uncertainty_m = 1e-3;
-  EXPECT_DOUBLE_EQ(floor(Metric::position), 1e-3 + 5.0 * kRounding);
+  EXPECT_DOUBLE_EQ(floor(Metric::position), 1e-3 + 5.0 * kSumRounding);
   run.run.precision = "float32";
-  EXPECT_DOUBLE_EQ(floor(Metric::energy), 0x1p29 * kRounding);
+  EXPECT_DOUBLE_EQ(floor(Metric::energy), 0x1p29 * kSumRounding);
 }
 
 TEST(Baseline, BetterByMoreThanTheFactor_IsTold) {

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
-namespace carom {
+#include "tests/support/numbers.h"
+
+namespace carom::test {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// What the movers of a probe do, as a function of time.
 using StatesAt = std::function<std::vector<BallState>(double)>;
@@ -169,4 +168,4 @@ TEST(Coefficients, Panels_HaveACurveForEachEngine_AndAValueForEachSpeed) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

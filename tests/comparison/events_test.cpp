@@ -11,6 +11,7 @@
 #include "comparison/metrics/brought.h"
 #include "core/random.h"
 #include "engine/modules.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 #include "trajectory/record.h"
 
@@ -21,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 EngineChoice carom_choice(const std::string& name) {
   const std::shared_ptr<const Engine> engine = make_carom_engine(name);

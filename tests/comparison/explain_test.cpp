@@ -5,17 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <set>
 
-namespace carom {
+#include "tests/support/numbers.h"
+
+namespace carom::test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr DivergenceScale kScale{1e-15, 1e-12};
 
 std::vector<Switch> switches(int count) {
@@ -191,4 +191,4 @@ TEST(TellingMetric, IsPosition_WhereThereIsATruth_ElseEnergy) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "tests/support/numbers.h"
 
 namespace carom::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double packing_of(double density) {
   return kPi / 6.0 * density;  // σ = 1

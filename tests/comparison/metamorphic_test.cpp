@@ -7,12 +7,11 @@
 #include <limits>
 #include <set>
 
+#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
 namespace carom::test {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Everything that a scene can have, in space.
 Scenario everything() {

@@ -12,14 +12,13 @@
 #include "comparison/statistics/cooling.h"
 #include "comparison/statistics/distributions.h"
 #include "core/random.h"
+#include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
 namespace carom::test {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kPi = std::numbers::pi;
 
 /// A gas of one radius; `more` are tables before the box, `second` a second group of balls.
 ScenarioPtr gas_scene(int dimension, int count, double duration_s, const std::string& more = "",

@@ -6,13 +6,12 @@
 #include "tests/reference/energy.h"
 #include "tests/reference/support.h"
 #include "tests/reference/switches.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
 
 using namespace reference_test;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const Engine& box2d() {
   static const Engine& module = engine("box2d");
@@ -256,4 +255,4 @@ TEST(Box2d, PositionIterations_GiveEnergyUnderGravity) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

@@ -6,13 +6,12 @@
 #include "tests/reference/energy.h"
 #include "tests/reference/support.h"
 #include "tests/reference/switches.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
 
 using namespace reference_test;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One precision of Bullet in one dimension. Both modules are open in this process throughout.
 struct Case {
@@ -352,4 +351,4 @@ TEST_P(Bullet, EnergyAccount_BooksAWallImpactAtTheWall) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -13,13 +12,10 @@
 #include <vector>
 
 #include "reference/closed_form/motion.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kG = 9.81;  // m/s²
 
 Ball ball(const Vec3& position, const Vec3& velocity = Vec3::Zero(), double mass = 1.0, double radius = 0.1) {
   return {.mass = mass, .radius = radius, .position = position, .velocity = velocity};
@@ -39,7 +35,7 @@ Scenario scene(std::vector<Ball> balls, double duration_s = 10.0) {
 /// A ball whose lowest point is `height` over the floor y = 0.
 Scenario drop(double height, double e, double vy = 0.0, double duration_s = 10.0) {
   Scenario s = scene({ball({0.3, height + 0.1, 0}, {0.25, vy, 0}, 2.0)}, duration_s);
-  s.effects.gravity = Vec3(0, -kG, 0);
+  s.effects.gravity = Vec3(0, -kGravity, 0);
   s.walls = {{Vec3::UnitY(), 0.0}};
   s.wall_contact.restitution = e;
   return s;
@@ -166,7 +162,7 @@ TEST(ClosedFormPair, ImmovableBall_ReflectsTheOther_AndItsPushIsCounted) {
 TEST(ClosedFormPair, RelativeMotion_IsTheSame_WithAndWithoutGravity) {
   Scenario s = scene({ball({-1, 0, 0}, {2, 0, 0}), ball({1, 0.1, 0}, {-1, 0, 0}, 5.0)}, 3.0);
   const Moment free = at(s, 3.0);
-  s.effects.gravity = Vec3(1, -kG, 0);
+  s.effects.gravity = Vec3(1, -kGravity, 0);
   const Moment falling = at(s, 3.0);
   const Vec3 apart = free.balls[1].position - free.balls[0].position;
   EXPECT_LT((falling.balls[1].position - falling.balls[0].position - apart).norm(),
@@ -292,7 +288,7 @@ TEST(ClosedFormWalls, Drop_HasItsFirstImpactAndRebounds_AsTheFormulasSay) {
   const double h = 1.25;
   for (const double e : {0.5, 0.9, 1.0}) {
     const Scenario s = drop(h, e);
-    const double first = std::sqrt(2.0 * h / kG);
+    const double first = std::sqrt(2.0 * h / kGravity);
     EXPECT_EQ(at(s, first * (1.0 - 4.0 * kEpsilon)).tally.impacts, 0);
     EXPECT_EQ(at(s, first * (1.0 + 4.0 * kEpsilon)).tally.impacts, 1);
     double bounce = first;
@@ -301,7 +297,7 @@ TEST(ClosedFormWalls, Drop_HasItsFirstImpactAndRebounds_AsTheFormulasSay) {
       const Moment apex = at(s, bounce + 0.5 * flight);
       EXPECT_EQ(apex.tally.impacts, n);
       EXPECT_NEAR(apex.balls[0].position.y() - 0.1, h * std::pow(e, 2 * n), apex.uncertainty_m + rounding(h));
-      EXPECT_NEAR(apex.balls[0].velocity.y(), 0.0, rounding(kG * bounce));
+      EXPECT_NEAR(apex.balls[0].velocity.y(), 0.0, rounding(kGravity * bounce));
       bounce += flight;
     }
   }
@@ -310,7 +306,7 @@ TEST(ClosedFormWalls, Drop_HasItsFirstImpactAndRebounds_AsTheFormulasSay) {
 TEST(ClosedFormWalls, Drop_RestsAfterAFiniteTime_BelowFullRestitution) {
   for (const double e : {0.0, 0.5, 0.9, 0.999}) {
     const double h = 0.2;
-    const double end = std::sqrt(2.0 * h / kG) * (1.0 + e) / (1.0 - e);
+    const double end = std::sqrt(2.0 * h / kGravity) * (1.0 + e) / (1.0 - e);
     const Scenario s = drop(h, e, 0.0, 2.0 * end);
     const Moment before = at(s, end * (1.0 - 1e-6));
     const Moment after = at(s, end * (1.0 + 4.0 * kEpsilon));
@@ -318,7 +314,7 @@ TEST(ClosedFormWalls, Drop_RestsAfterAFiniteTime_BelowFullRestitution) {
     // With R = 1e-6 T left, flights last less than R/e, and rise less than g (R/e)²/8; with e = 0 it still
     // falls.
     const double left = 1e-6 * end;
-    const double above = e > 0.0 ? kG * left * left / (8.0 * e * e) : kG * end * left;
+    const double above = e > 0.0 ? kGravity * left * left / (8.0 * e * e) : kGravity * end * left;
     EXPECT_LE(before.balls[0].position.y() - 0.1, above + before.uncertainty_m);
     EXPECT_EQ(after.balls[0].position.y(), 0.1);
     EXPECT_EQ(after.balls[0].velocity.y(), 0.0);
@@ -331,9 +327,9 @@ TEST(ClosedFormWalls, Drop_ReachesItsImpact_ThrownUpOrDown) {
   const double h = 1.0;
   for (const double v : {-3.0, 4.0}) {
     const Scenario s = drop(h, 0.5, v);
-    const double speed = std::sqrt(v * v + 2.0 * kG * h);
-    const double first = (v + speed) / kG;
-    const Moment moment = at(s, first + 0.25 * speed / kG);
+    const double speed = std::sqrt(v * v + 2.0 * kGravity * h);
+    const double first = (v + speed) / kGravity;
+    const Moment moment = at(s, first + 0.25 * speed / kGravity);
     EXPECT_EQ(moment.tally.impacts, 1);
     EXPECT_NEAR(moment.balls[0].velocity.y(), 0.25 * speed, rounding(2.0 * speed));
   }
@@ -344,12 +340,12 @@ TEST(ClosedFormWalls, WallImpulse_IsTheSumOverBounces_WithTheMomentAtTheContact)
   const double e = 0.7;
   const Scenario s = drop(h, e, 0.0, 20.0);
   const double m = 2.0;
-  const double first = std::sqrt(2.0 * h / kG);
+  const double first = std::sqrt(2.0 * h / kGravity);
   double t = first;
   double impulse = 0.0;
   double moment = 0.0;
   for (int n = 0; n < 200; ++n) {  // e^200 < 1e-30: all of them
-    const double j = m * (1.0 + e) * kG * first * std::pow(e, n);
+    const double j = m * (1.0 + e) * kGravity * first * std::pow(e, n);
     impulse += j;
     moment += j * (0.3 + 0.25 * t);
     t += 2.0 * first * std::pow(e, n + 1);
@@ -360,9 +356,10 @@ TEST(ClosedFormWalls, WallImpulse_IsTheSumOverBounces_WithTheMomentAtTheContact)
     EXPECT_NEAR(five.external_angular_impulse.z(), moment, rounding(moment));
   }
   const Tally end = at(s, 20.0).tally;  // from t on the floor carries the ball
-  EXPECT_NEAR(end.external_impulse.y(), impulse + m * kG * (20.0 - t), rounding(m * kG * 20.0));
+  EXPECT_NEAR(end.external_impulse.y(), impulse + m * kGravity * (20.0 - t), rounding(m * kGravity * 20.0));
   EXPECT_NEAR(end.external_angular_impulse.z(),
-              moment + m * kG * (0.3 * (20.0 - t) + 0.125 * (400.0 - t * t)), rounding(m * kG * 60.0));
+              moment + m * kGravity * (0.3 * (20.0 - t) + 0.125 * (400.0 - t * t)),
+              rounding(m * kGravity * 60.0));
 }
 
 /// Fine steps, exact between bounces, reflected at the first step beyond a wall: wrong by O(v h) per bounce.
@@ -417,7 +414,7 @@ TEST(ClosedFormWalls, BoxMotion_IsExact_AfterAMillionBounces) {
 }
 
 TEST(ClosedFormWalls, ElasticDrop_ReturnsToItsHeight_AfterAMillionBounces) {
-  const double h = 0.5 * kG;  // falls for 1 s
+  const double h = 0.5 * kGravity;  // falls for 1 s
   Scenario s = drop(h, 1.0, 0.0, 4.0e6);
   s.balls[0].velocity.x() = 0.0;
   const Moment moment = at(s, 2.0e6);
@@ -425,7 +422,7 @@ TEST(ClosedFormWalls, ElasticDrop_ReturnsToItsHeight_AfterAMillionBounces) {
   // h and its gap are rounded: the period is off by ε/2 of h + r each, a million times, which near the apex
   // enters squared; the velocity shows it.
   EXPECT_NEAR(moment.balls[0].position.y(), h + 0.1, moment.uncertainty_m + rounding(h));
-  EXPECT_NEAR(moment.balls[0].velocity.y(), 0.0, kG * 2.0e6 * 4.0 * kEpsilon);
+  EXPECT_NEAR(moment.balls[0].velocity.y(), 0.0, kGravity * 2.0e6 * 4.0 * kEpsilon);
 }
 
 TEST(ClosedFormWalls, Speed_FallsByRestitutionAtEveryWall_InABox) {
@@ -445,7 +442,7 @@ TEST(ClosedFormWalls, BallAtRestOnTheFloor_StaysAndIsCarried) {
     const Moment end = at(s, 10.0);
     EXPECT_EQ(end.balls[0].position.y(), 0.1);
     EXPECT_EQ(end.tally.impacts, 0);
-    EXPECT_NEAR(end.tally.external_impulse.y(), 2.0 * kG * 10.0, rounding(2.0 * kG * 10.0));
+    EXPECT_NEAR(end.tally.external_impulse.y(), 2.0 * kGravity * 10.0, rounding(2.0 * kGravity * 10.0));
   }
 }
 
@@ -526,7 +523,7 @@ BallState integrated(const Scenario& s, double end_s) {
 }
 
 TEST(ClosedFormDrag, Motion_MatchesFineIntegration_EveryCase) {
-  const Vec3 down(0, -kG, 0);
+  const Vec3 down(0, -kGravity, 0);
   const Vec3 none = Vec3::Zero();
   const Vec3 oblique(3, 4, 0);
   using enum Drag::Kind;
@@ -546,7 +543,7 @@ TEST(ClosedFormDrag, Motion_MatchesFineIntegration_EveryCase) {
       // of 50 m: below 1e-14 m. At an apex the third derivative of the speed jumps by 2 q g², of which the
       // step across it makes h³/3 at most, and the time left a way.
       const double h = end_s / kSteps;
-      const double jump = 2.0 * s.effects.drag->coefficient / s.balls[0].mass * kG * kG;
+      const double jump = 2.0 * s.effects.drag->coefficient / s.balls[0].mass * kGravity * kGravity;
       const bool turns = s.balls[0].velocity.y() > 0.0 && s.effects.drag->kind == quadratic;
       const double step_error = 1e-14 + (turns ? jump * h * h * h / 3.0 * end_s : 0.0);
       EXPECT_LT((moment.balls[0].position - expected.position).norm(), moment.uncertainty_m + step_error);
@@ -556,21 +553,21 @@ TEST(ClosedFormDrag, Motion_MatchesFineIntegration_EveryCase) {
 }
 
 TEST(ClosedFormDrag, Fall_ApproachesTheTerminalSpeed) {
-  const Vec3 down(0, -kG, 0);
-  const double linear = 0.5 * kG / 0.1;
+  const Vec3 down(0, -kGravity, 0);
+  const double linear = 0.5 * kGravity / 0.1;
   EXPECT_NEAR(at(with_drag(Drag::Kind::linear, 0.1, Vec3::Zero(), down, 1e4), 1e4).balls[0].velocity.y(),
               -linear, rounding(linear));
-  const double quadratic = std::sqrt(0.5 * kG / 0.02);
+  const double quadratic = std::sqrt(0.5 * kGravity / 0.02);
   const Moment fall = at(with_drag(Drag::Kind::quadratic, 0.02, Vec3::Zero(), down, 1e4), 1e4);
   EXPECT_NEAR(fall.balls[0].velocity.y(), -quadratic, rounding(quadratic));
   // ln cosh θ → θ - ln 2
-  const double way = quadratic * 1e4 - quadratic * quadratic / kG * std::numbers::ln2;
+  const double way = quadratic * 1e4 - quadratic * quadratic / kGravity * std::numbers::ln2;
   EXPECT_NEAR(fall.balls[0].position.y(), 2.0 - way, fall.uncertainty_m);
 }
 
 TEST(ClosedFormDrag, Scene_IsRefused_WhereTheFamilyEnds) {
   using enum Drag::Kind;
-  const Vec3 down(0, -kG, 0);
+  const Vec3 down(0, -kGravity, 0);
   EXPECT_EQ(refusal(with_drag(quadratic, 0.1, Vec3(1, 0, 0), down, 1.0)),
             "no closed form: quadratic drag and gravity, off the vertical");
   Scenario floor = with_drag(linear, 0.1, Vec3(1, 0, 0), down, 1.0);
@@ -817,4 +814,4 @@ TEST(ClosedForm, FeaturesWithoutAForm_AreNamedWithAReason) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

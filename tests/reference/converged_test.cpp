@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,15 +16,12 @@
 #include "reference/exact/exact.h"
 #include "scenario/catalog.h"
 #include "scenario/parse.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kG = 9.81;  // m/s²
 
 /// What a source says of a scene, at `frames` equal moments after the start.
 struct Told {
@@ -166,7 +162,7 @@ TEST(ConvergedTruth, AgreesWithClosedForms_RandomFlights) {
         s.effects.drag = Drag{Drag::Kind::quadratic, random.uniform(0.0, 2.0)};
         break;
       case 2:  // quadratic drag along gravity, up, down and from rest
-        s.effects.gravity = Vec3(0, -kG, 0);
+        s.effects.gravity = Vec3(0, -kGravity, 0);
         s.effects.drag = Drag{Drag::Kind::quadratic, random.uniform(0.01, 2.0)};
         b.velocity = Vec3(0, random.uniform() < 0.3 ? 0.0 : random.uniform(-8.0, 8.0), 0);
         break;
@@ -202,7 +198,7 @@ TEST(ConvergedTruth, AgreesWithClosedForms_RandomImpacts) {
       b.spin = spin();
       s.balls = {a, b};
     } else {  // a bounce or more on a rough floor
-      s.effects.gravity = Vec3(0, -kG, 0);
+      s.effects.gravity = Vec3(0, -kGravity, 0);
       s.walls = {{Vec3::UnitY(), 0.0}};
       s.wall_contact.restitution = random.uniform(0.8, 1.0);
       Ball b = ball({0, random.uniform(0.2, 2.0), 0}, random_vector(random, dimension, 2.0));
@@ -313,7 +309,7 @@ TEST(ConvergedTruth, Energy_FallsByTheWorkOfDrag_BothKinds) {
     Scenario s = scene(3, 1.0);
     const bool linear = round % 2 == 0;
     const double c = 0.3;
-    s.effects.gravity = Vec3(1.0, -kG, 0.5);
+    s.effects.gravity = Vec3(1.0, -kGravity, 0.5);
     s.effects.drag = Drag{linear ? Drag::Kind::linear : Drag::Kind::quadratic, c};
     s.effects.spin = true;
     s.effects.magnus = 0.1;
@@ -430,7 +426,7 @@ TEST(ConvergedTruth, Top_IsPassed_NearlyStraightThrow) {
   for (const double across : {0.0, 1e-20, 1e-3}) {
     SCOPED_TRACE(across);
     Scenario s = scene(2, 2.0);
-    s.effects.gravity = Vec3(0, -kG, 0);
+    s.effects.gravity = Vec3(0, -kGravity, 0);
     s.effects.drag = Drag{Drag::Kind::quadratic, 0.2};
     s.balls = {ball(Vec3::Zero(), {across, 8.0, 0})};
     const Told told = converged(s, {}, 8);
@@ -448,7 +444,7 @@ TEST(ConvergedTruth, Top_IsPassed_NearlyStraightThrow) {
 
 TEST(ConvergedTruth, EndsWhereBouncingEnds_AtTheKnownTime) {
   Scenario s = scene(2, 10.0);
-  s.effects.gravity = Vec3(0, -kG, 0);
+  s.effects.gravity = Vec3(0, -kGravity, 0);
   s.walls = {{Vec3::UnitY(), 0.0}};
   s.wall_contact.restitution = 0.5;
   s.balls = {ball({0, 1.1, 0})};
@@ -456,7 +452,7 @@ TEST(ConvergedTruth, EndsWhereBouncingEnds_AtTheKnownTime) {
   ASSERT_TRUE(told.solution.known_until_s);
   // T = √(2h/g) (1 + e)/(1 - e) with h = 1 m; what is left when the bounces cannot be told apart is far
   // below.
-  EXPECT_NEAR(*told.solution.known_until_s, std::sqrt(2.0 / kG) * 3.0, 1e-12);
+  EXPECT_NEAR(*told.solution.known_until_s, std::sqrt(2.0 / kGravity) * 3.0, 1e-12);
   EXPECT_THAT(told.solution.limit, HasSubstr("rest"));
   EXPECT_LT(told.frames.size(), 17U);
 }
@@ -464,7 +460,7 @@ TEST(ConvergedTruth, EndsWhereBouncingEnds_AtTheKnownTime) {
 TEST(ConvergedTruth, EndsWhereABallComesToRest_UnderDrag) {
   for (const auto kind : {Drag::Kind::linear, Drag::Kind::quadratic}) {
     Scenario s = scene(2, 10.0);
-    s.effects.gravity = Vec3(0, -kG, 0);
+    s.effects.gravity = Vec3(0, -kGravity, 0);
     s.effects.drag = Drag{kind, 0.5};
     s.walls = {{Vec3::UnitY(), 0.0}};
     s.wall_contact.restitution = 0.5;
@@ -609,4 +605,4 @@ TEST(ConvergedTruth, Refuses_WhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

@@ -6,13 +6,12 @@
 #include "tests/reference/energy.h"
 #include "tests/reference/support.h"
 #include "tests/reference/switches.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
 
 using namespace reference_test;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What Chipmunk and ODE have in common: fixed steps in double precision, without continuous collision.
 struct Case {
@@ -383,4 +382,4 @@ TEST(Ode, DefaultProfile_LosesBouncesBelowItsThreshold) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

@@ -9,12 +9,14 @@
 #include "core/random.h"
 #include "reference/exact/polynomial.h"
 #include "reference/exact/run.h"
+#include "tests/support/numbers.h"
 
 namespace carom::exact {
 namespace {
 
+using test::kInfinity;
+
 constexpr int kDigits = 60;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Real power_of_ten(int exponent) {
   return pow(Real(10), exponent);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -17,14 +16,12 @@
 #include "reference/exact/certify.h"
 #include "scenario/catalog.h"
 #include "scenario/parse.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What a source handed out.
 struct Story {
@@ -386,4 +383,4 @@ TEST(ExactTruth, ImmovableBallsPassEachOther) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

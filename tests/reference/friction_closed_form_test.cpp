@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -13,16 +12,14 @@
 
 #include "core/random.h"
 #include "reference/closed_form/closed_form.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
 
 using Real = long double;
 using Vec3Real = Eigen::Matrix<Real, 3, 1>;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kG = 9.81;  // m/s²
 constexpr double kSolid = 0.4;
 
 /// What rounding leaves of a sum of a few products of numbers no larger than `scale`, sixteen roundings.
@@ -57,7 +54,7 @@ Scenario over_floor(double height, const Vec3& velocity, const Vec3& spin, doubl
                        .velocity = velocity,
                        .spin = spin}},
                      duration_s);
-  s.effects.gravity = Vec3(0, 0, -kG);
+  s.effects.gravity = Vec3(0, 0, -kGravity);
   s.walls = {{Vec3::UnitZ(), 0.0}};
   s.wall_contact.friction = mu;
   return s;
@@ -171,7 +168,7 @@ TEST(ClosedFormMagnus, Motion_MatchesFineIntegration_AnyAxis) {
     const double spin = k % 10 == 0 ? 0.0 : std::pow(10.0, random.uniform(-6.0, 2.0));
     const Vec3 axis = random_vector(random, 1.0);
     const Vec3 velocity = random_vector(random, 4.0);
-    const Scenario s = magnus(velocity, axis.normalized() * spin, random_vector(random, kG), 2.0);
+    const Scenario s = magnus(velocity, axis.normalized() * spin, random_vector(random, kGravity), 2.0);
     const Moment moment = at(s, 2.0);
     const auto [x, v] = integrated(s, 2.0, kSteps);
     // Steps of 2e-4 s at 20 rad/s err by (h Ω)⁴/120 = 2e-12 of the way, 7 m/s × 2 s + ½ 17 m/s² × 4 s² = 48
@@ -185,13 +182,15 @@ TEST(ClosedFormMagnus, Motion_MatchesFineIntegration_AnyAxis) {
 
 TEST(ClosedFormMagnus, BallLetGo_ComesBackToItsHeight_AndDrifts) {
   const double rate = 0.1 * 30.0 / 0.5;
-  const Scenario s = magnus(Vec3::Zero(), {0, 0, 30}, {0, -kG, 0}, 10.0);
+  const Scenario s = magnus(Vec3::Zero(), {0, 0, 30}, {0, -kGravity, 0}, 10.0);
   const double period = 2.0 * std::numbers::pi / rate;
   const Moment cusp = at(s, 4.0 * period);
   // Four arcs of a cycloid, with 2 π ε in the period: they count at the speed, which is 0 there but for ε.
-  EXPECT_LT(cusp.ball().velocity.norm(), rounding(kG * 4.0 * period));
-  EXPECT_LT((cusp.ball().position - Vec3(1.0 + kG / rate * 4.0 * period, 2, 3)).norm(), cusp.uncertainty_m);
-  EXPECT_NEAR(at(s, 0.5 * period).ball().position.y(), 2.0 - 2.0 * kG / (rate * rate), cusp.uncertainty_m);
+  EXPECT_LT(cusp.ball().velocity.norm(), rounding(kGravity * 4.0 * period));
+  EXPECT_LT((cusp.ball().position - Vec3(1.0 + kGravity / rate * 4.0 * period, 2, 3)).norm(),
+            cusp.uncertainty_m);
+  EXPECT_NEAR(at(s, 0.5 * period).ball().position.y(), 2.0 - 2.0 * kGravity / (rate * rate),
+              cusp.uncertainty_m);
 }
 
 TEST(ClosedFormMagnus, Scene_IsRefused_WhereTheFamilyEnds) {
@@ -217,7 +216,7 @@ TEST(ClosedFormRoughWall, SlidingBall_RollsAtFiveSevenths_AndLosesTwoSeventhsOfI
   const double v = 2.0;
   const double mu = 0.2;
   const Scenario s = over_floor(0.0, {v, 0, 0}, Vec3::Zero(), mu, 2.0);
-  const double rolls = 2.0 * v / (7.0 * mu * kG);
+  const double rolls = 2.0 * v / (7.0 * mu * kGravity);
   const Moment before = at(s, 0.5 * rolls);
   EXPECT_EQ(before.family, "a rough wall");
   EXPECT_NEAR(before.ball().velocity.x(), v * 6.0 / 7.0, rounding(v));
@@ -246,8 +245,8 @@ TEST(ClosedFormRoughWall, SlipFallsUniformly_AndTheRestIsKept_AnyVelocitySpinAnd
     // The lowest point, at -r z, moves at v + ω × (-r z); over it friction does its work.
     const Vec3Real slip = real(ball.velocity) + real(ball.spin).cross(real({0, 0, -ball.radius}));
     const Real kappa = ball.inertia;
-    const Real end_s = slip.norm() * kappa / ((1 + kappa) * mu * kG);
-    const Vec3Real braking = slip.normalized() * (static_cast<Real>(mu) * kG);
+    const Real end_s = slip.norm() * kappa / ((1 + kappa) * mu * kGravity);
+    const Vec3Real braking = slip.normalized() * (static_cast<Real>(mu) * kGravity);
     for (int i = 1; i <= 20; ++i) {
       const double t = 0.25 * i;
       const Moment moment = at(s, t);
@@ -272,11 +271,11 @@ TEST(ClosedFormRoughWall, Account_OfTheFloor_IsItsPushAtTheContact) {
   const double t = 0.2;  // it still slides
   const Scenario s = over_floor(0.0, {v, 0, 0}, Vec3::Zero(), mu, 2.0);
   const Tally tally = at(s, t).tally;
-  const double weight = 0.5 * kG;
+  const double weight = 0.5 * kGravity;
   EXPECT_LT((tally.external_impulse - Vec3(-mu, 0, 1) * (weight * t)).norm(), rounding(weight * t));
   // At (x, y, 0) with x = 0.3 + v t - ½ μ g t², y = -0.2: about y by -∫ x dt m g, about x by y m g t, and
   // about z by y μ m g t.
-  const double area = 0.3 * t + v * t * t / 2.0 - mu * kG * t * t * t / 6.0;
+  const double area = 0.3 * t + v * t * t / 2.0 - mu * kGravity * t * t * t / 6.0;
   const Vec3 expected = Vec3(-0.2 * t, -area, -0.2 * mu * t) * weight;
   EXPECT_LT((tally.external_angular_impulse - expected).norm(), rounding(weight * t));
   EXPECT_EQ(tally.impacts, 0);
@@ -293,18 +292,18 @@ TEST(ClosedFormRoughWall, BallOnASlope_RollsOrSlides_AsFrictionAllows) {
       s.balls[0].inertia = kappa;
       const Moment end = at(s, 2.0);
       const bool rolls = mu > least;
-      const double a = rolls ? kG * sine / (1.0 + kappa) : kG * (sine - mu * cosine);
-      const double spin_rate = rolls ? a / 0.1 : mu * kG * cosine / (kappa * 0.1);
+      const double a = rolls ? kGravity * sine / (1.0 + kappa) : kGravity * (sine - mu * cosine);
+      const double spin_rate = rolls ? a / 0.1 : mu * kGravity * cosine / (kappa * 0.1);
       // 0.6 and 0.8 as doubles stand for a slope that is off by ε, and so does g along it.
-      EXPECT_LT((end.ball().velocity - down * (a * 2.0)).norm(), rounding(kG * 2.0));
+      EXPECT_LT((end.ball().velocity - down * (a * 2.0)).norm(), rounding(kGravity * 2.0));
       EXPECT_LT((end.ball().position - s.balls[0].position - down * (a * 2.0)).norm(),
-                end.uncertainty_m + rounding(kG * 2.0));
-      EXPECT_NEAR(end.ball().spin.y(), spin_rate * 2.0, rounding(kG * 2.0 / (kappa * 0.1)));
+                end.uncertainty_m + rounding(kGravity * 2.0));
+      EXPECT_NEAR(end.ball().spin.y(), spin_rate * 2.0, rounding(kGravity * 2.0 / (kappa * 0.1)));
       const Ball& ball = s.balls[0];
-      const double fallen = ball.mass * kG * (ball.position.z() - end.ball().position.z());
+      const double fallen = ball.mass * kGravity * (ball.position.z() - end.ball().position.z());
       const double gained = kinetic(ball, end.ball().velocity, end.ball().spin);
       if (rolls) {
-        EXPECT_NEAR(gained, fallen, rounding(ball.mass * kG * 12.0));
+        EXPECT_NEAR(gained, fallen, rounding(ball.mass * kGravity * 12.0));
       } else {
         EXPECT_LT(gained, fallen);
       }
@@ -318,10 +317,10 @@ TEST(ClosedFormRoughWall, BallThrownUpASlope_IsContinuous_AndTurnsItsSlip) {
     Scenario s = on_slope(mu, 2.0);
     s.balls[0].velocity = -3.0 * down;
     // Up to slip 0 friction and gravity both pull down; then, if it can, it rolls; or friction pulls up.
-    const double slide = kG * (0.6 + mu * 0.8);
-    const double braking = kG * (0.6 + 3.5 * mu * 0.8);
+    const double slide = kGravity * (0.6 + mu * 0.8);
+    const double braking = kGravity * (0.6 + 3.5 * mu * 0.8);
     const double end = 3.0 / braking;
-    const double then = mu > 0.75 * 2.0 / 7.0 ? kG * 0.6 / 1.4 : kG * (0.6 - mu * 0.8);
+    const double then = mu > 0.75 * 2.0 / 7.0 ? kGravity * 0.6 / 1.4 : kGravity * (0.6 - mu * 0.8);
     const auto speed = [&](double t) {
       return -3.0 + slide * std::min(t, end) + then * std::max(0.0, t - end);
     };
@@ -407,16 +406,16 @@ TEST(ClosedFormRoughWall, Bounces_FollowTheRecursion_AnyCoefficients) {
     const Contact& c = s.wall_contact;
     Bounces bounces{vx,
                     static_cast<Real>(spin) * 0.1L,
-                    std::sqrt(2 * static_cast<Real>(kG) * h),
+                    std::sqrt(2 * static_cast<Real>(kGravity) * h),
                     s.balls[0].inertia,
                     c.restitution,
                     c.friction,
                     c.tangential_restitution};
-    Real t = bounces.u / kG;
+    Real t = bounces.u / kGravity;
     Real x = 0.3L + vx * t;
     for (int n = 1; n <= 8; ++n) {
       bounces.impact();
-      const Real half = bounces.u / kG;
+      const Real half = bounces.u / kGravity;
       const Moment apex = at(s, static_cast<double>(t + half));
       EXPECT_EQ(apex.tally.impacts, n);
       // The moment is rounded, by ε/2 of 8 s at most, and so x at up to 10 m/s; h it does not touch.
@@ -452,33 +451,34 @@ TEST(ClosedFormRoughWall, AfterAllBounces_TheBallRolls_AsItsMomentAboutTheContac
     EXPECT_LT((end.ball().spin - (n.cross(rolls) / ball.radius + n * ball.spin.z())).norm(), rounding(140.0));
     EXPECT_NEAR(end.ball().position.z(), ball.radius, end.uncertainty_m);
     // The floor's push is what is missing of the momentum.
-    const Vec3 missing = ball.mass * (end.ball().velocity - ball.velocity + Vec3(0, 0, kG * 30.0));
-    EXPECT_LT((end.tally.external_impulse - missing).norm(), rounding(ball.mass * kG * 30.0));
+    const Vec3 missing = ball.mass * (end.ball().velocity - ball.velocity + Vec3(0, 0, kGravity * 30.0));
+    EXPECT_LT((end.tally.external_impulse - missing).norm(), rounding(ball.mass * kGravity * 30.0));
   }
 }
 
 TEST(ClosedFormRoughWall, State_IsContinuous_AtTheEndOfAllBounces) {
   Scenario s = over_floor(0.5, {1, 0, 0}, {0, 300, 0}, 0.1, 5.0);  // it still slides when it comes to rest
   s.wall_contact.restitution = 0.6;
-  const double end = std::sqrt(2.0 * 0.5 / kG) * 1.6 / 0.4;
+  const double end = std::sqrt(2.0 * 0.5 / kGravity) * 1.6 / 0.4;
   const double around = 1e-7;
   const Moment before = at(s, end - around);
   const Moment after = at(s, end + around);
   EXPECT_GT(after.tally.impacts, 20);
   // Flights so near to the end last 1e-7 s / 0.6 at most; friction makes μ g of it, and the last bounces
   // throw the ball up by as much: four times g around is more than both.
-  EXPECT_LT((after.ball().velocity - before.ball().velocity).norm(), 4.0 * kG * around);
+  EXPECT_LT((after.ball().velocity - before.ball().velocity).norm(), 4.0 * kGravity * around);
   EXPECT_LT((after.ball().position - before.ball().position).norm(), 2.0 * 10.0 * around);
   // Bounces and sliding have pushed with the weight, on average, and friction with μ of that.
-  const double u = std::sqrt(2.0 * kG * 0.5);
-  EXPECT_NEAR(after.ball().velocity.x(), 1.0 + 0.1 * (u + kG * (end - u / kG)), 4.0 * kG * around);
+  const double u = std::sqrt(2.0 * kGravity * 0.5);
+  EXPECT_NEAR(after.ball().velocity.x(), 1.0 + 0.1 * (u + kGravity * (end - u / kGravity)),
+              4.0 * kGravity * around);
 }
 
 TEST(ClosedFormRoughWall, BounceOnASlope_IsThatOnAFloor_Turned) {
   const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, -1).normalized());
   Scenario level = over_floor(0.5, {1, 0.5, 0}, {10, -20, 30}, 0.2, 1.2);
   level.wall_contact = {.restitution = 0.7, .friction = 0.2, .tangential_restitution = 0.3};
-  level.effects.gravity = Vec3(1, 2, -kG);
+  level.effects.gravity = Vec3(1, 2, -kGravity);
   Scenario turned = level;
   for (Vec3* v : {&turned.balls[0].position, &turned.balls[0].velocity, &turned.balls[0].spin,
                   &*turned.effects.gravity, &turned.walls[0].normal}) {
@@ -662,4 +662,4 @@ TEST(ClosedFormRoughPair, OppositeSpins_MeshLikeGears_AndEqualOnesBrake) {
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

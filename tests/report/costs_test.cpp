@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "tests/report/cells.h"
 
 namespace carom::test {
 namespace {
@@ -65,10 +66,6 @@ class CostsChapter : public testing::Test {
       fs::path(testing::TempDir()) /
       (std::string("carom-costs-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
-
-std::string cell(const std::string& text) {
-  return "<td class=\"number\">" + text + "</td>";
-}
 
 TEST_F(CostsChapter, ShowsInstructionsPerBallAndStep_AndByThoseOfTheBareScene) {
   write(kCosts);

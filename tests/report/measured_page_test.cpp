@@ -14,7 +14,7 @@ using page::Node;
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string chapter_of(const std::string& text) {
+std::string measured_chapter_of(const std::string& text) {
   const std::string file = testing::TempDir() + "published-for-a-page.json";
   write_file(file, text);
   pugi::xml_document document;
@@ -24,7 +24,7 @@ std::string chapter_of(const std::string& text) {
 }
 
 TEST(MeasuredChapter, ShowsValuesVerdictsAndTheSourceWithItsDoi) {
-  const std::string text = chapter_of(R"([{"key": "k", "title": "On spheres", "authors": "A. Author",
+  const std::string text = measured_chapter_of(R"([{"key": "k", "title": "On spheres", "authors": "A. Author",
     "journal": "Journal 1, 2", "year": 1999, "doi": "10.1/x", "note": "A note.", "values": [
     {"name": "first", "unit": "m/s", "published": 0.5, "uncertainty": 0.01, "uncertainty_from": "stated",
      "measured": 0.501, "measured_uncertainty": 0.002, "meets": true, "why": ""},
@@ -43,7 +43,7 @@ TEST(MeasuredChapter, IsAbsentWithoutTheFile_AndNamesABadOne) {
   pugi::xml_document document;
   page::add_measured(document.append_child("body"), "/nowhere/published.json");
   EXPECT_TRUE(document.child("body").first_child().empty());
-  EXPECT_THAT([] { chapter_of("[{}]"); },
+  EXPECT_THAT([] { measured_chapter_of("[{}]"); },
               testing::ThrowsMessage<InputError>(HasSubstr("tests/benchmarks/run writes it anew")));
 }
 

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "report/page/orders.h"
+#include "tests/report/cells.h"
 
 namespace carom::test {
 namespace {
@@ -14,25 +15,21 @@ using page::Node;
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string chapter_of(const std::filesystem::path& file) {
+std::string orders_chapter_of(const std::filesystem::path& file) {
   pugi::xml_document document;
   Node body = document.append_child("body");
   page::add_orders(body, file);
   return page::markup(body);
 }
 
-std::string chapter_of_text(const std::string& text) {
+std::string orders_chapter_of_text(const std::string& text) {
   const std::string file = testing::TempDir() + "orders-for-a-page.json";
   write_file(file, text);
-  return chapter_of(std::filesystem::path(file));
-}
-
-std::string cell(const std::string& text) {
-  return "<td class=\"number\">" + text + "</td>";
+  return orders_chapter_of(std::filesystem::path(file));
 }
 
 TEST(OrdersChapter, ShowsClaimMeasurementFitAndErrors_OfEachEvolver) {
-  const std::string text = chapter_of_text(R"([
+  const std::string text = orders_chapter_of_text(R"([
     {"scene": "a/b", "evolver": "step", "refuses": "", "claimed": 1, "order": 1.01234, "r_squared": 0.999876,
      "errors": [{"step_s": 0.25, "error_m": 0.5, "rounding_m": 1e-15},
                 {"step_s": 0.125, "error_m": 0.2, "rounding_m": 1e-15},
@@ -58,7 +55,7 @@ TEST(OrdersChapter, NamesTheFile_ThatItCannotUse) {
        {"{", "{}", "[]", "[{}]", "[1]",
         R"([{"scene": "a/b", "evolver": "toi", "refuses": "", "claimed": 1, "order": 1, "r_squared": 1,
              "errors": []}])"}) {
-    EXPECT_THAT([&] { chapter_of_text(bad); },
+    EXPECT_THAT([&] { orders_chapter_of_text(bad); },
                 testing::ThrowsMessage<InputError>(AllOf(HasSubstr("orders-for-a-page.json"),
                                                          HasSubstr("tests/benchmarks/run writes it anew"))))
         << bad;
@@ -67,7 +64,7 @@ TEST(OrdersChapter, NamesTheFile_ThatItCannotUse) {
 
 // What is committed is what the chapter takes.
 TEST(OrdersChapter, TakesTheFileOfThisProgram) {
-  EXPECT_THAT(chapter_of(std::filesystem::path(CAROM_SOURCE_DIR) / "reports/measured/orders.json"),
+  EXPECT_THAT(orders_chapter_of(std::filesystem::path(CAROM_SOURCE_DIR) / "reports/measured/orders.json"),
               AllOf(HasSubstr("flight/quadratic-drag"), HasSubstr("impact/oblique")));
 }
 

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "report/page/speed.h"
+#include "tests/report/cells.h"
 
 namespace carom::test {
 namespace {
@@ -15,21 +16,17 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string chapter_of(const std::filesystem::path& file) {
+std::string speed_chapter_of(const std::filesystem::path& file) {
   pugi::xml_document document;
   Node body = document.append_child("body");
   page::add_speed(body, file);
   return page::markup(body);
 }
 
-std::string chapter_of_text(const std::string& text) {
+std::string speed_chapter_of_text(const std::string& text) {
   const std::string file = testing::TempDir() + "speed-for-a-page.json";
   write_file(file, text);
-  return chapter_of(std::filesystem::path(file));
-}
-
-std::string cell(const std::string& text) {
-  return "<td class=\"number\">" + text + "</td>";
+  return speed_chapter_of(std::filesystem::path(file));
 }
 
 constexpr const char* kSpeed = R"({
@@ -50,7 +47,7 @@ constexpr const char* kSpeed = R"({
 })";
 
 TEST(SpeedChapter, ShowsEachGoal_WithItsSpread_AndWhetherItIsReached) {
-  EXPECT_THAT(chapter_of_text(kSpeed),
+  EXPECT_THAT(speed_chapter_of_text(kSpeed),
               AllOf(HasSubstr("faster</td>" + cell("at least 100") + cell("120 (110 … 130)") +
                               "<td class=\"holds\">✓ yes</td>"),
                     HasSubstr("smaller</td>" + cell("at most 200 bytes") + cell("250 (250 … 251)") +
@@ -58,24 +55,26 @@ TEST(SpeedChapter, ShowsEachGoal_WithItsSpread_AndWhetherItIsReached) {
 }
 
 TEST(SpeedChapter, ShowsEachEngineOverTheBalls_LeavingOpenWhatWasNotMeasured) {
-  EXPECT_THAT(chapter_of_text(kSpeed), AllOf(HasSubstr("peer</th>" + cell("700 (690 … 720)") + cell("–")),
-                                             HasSubstr("own</th>" + cell("9 (8 … 10)") + cell("10 (9 … 11)")),
-                                             HasSubstr("CPU time of one ball and step, ns: space"),
-                                             HasSubstr("CPU time of one collision, ns: dense")));
+  EXPECT_THAT(speed_chapter_of_text(kSpeed),
+              AllOf(HasSubstr("peer</th>" + cell("700 (690 … 720)") + cell("–")),
+                    HasSubstr("own</th>" + cell("9 (8 … 10)") + cell("10 (9 … 11)")),
+                    HasSubstr("CPU time of one ball and step, ns: space"),
+                    HasSubstr("CPU time of one collision, ns: dense")));
 }
 
 TEST(SpeedChapter, NamesTheMachine) {
-  EXPECT_THAT(chapter_of_text(kSpeed), HasSubstr("on a &lt;chip&gt; with 3 cores (a compiler, build Fast)"));
+  EXPECT_THAT(speed_chapter_of_text(kSpeed),
+              HasSubstr("on a &lt;chip&gt; with 3 cores (a compiler, build Fast)"));
 }
 
 TEST(SpeedChapter, IsAbsentWithoutTheFile) {
-  EXPECT_THAT(chapter_of("/nowhere/speed.json"), Not(HasSubstr("speed")));
+  EXPECT_THAT(speed_chapter_of("/nowhere/speed.json"), Not(HasSubstr("speed")));
 }
 
 TEST(SpeedChapter, NamesTheFile_ThatItCannotUse) {
   for (const char* bad :
        {"{", "[]", "{}", R"({"machine": {"cpu": "a", "cores": 1, "compiler": "b", "build": "c"}})"}) {
-    EXPECT_THAT([&] { chapter_of_text(bad); },
+    EXPECT_THAT([&] { speed_chapter_of_text(bad); },
                 testing::ThrowsMessage<InputError>(AllOf(HasSubstr("speed-for-a-page.json"),
                                                          HasSubstr("tests/benchmarks/run writes it anew"))))
         << bad;

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Two balls that begin `overlap` of their radius inside each other.
-std::shared_ptr<Scenario> scene(const std::string& id, double overlap = 0.0) {
+std::shared_ptr<Scenario> overlapping_scene(const std::string& id, double overlap = 0.0) {
   auto made = std::make_shared<Scenario>();
   made->id = id;
   made->title = "Scene " + id;
@@ -97,21 +97,22 @@ std::string chapter_of(std::vector<SceneComparison> scenes) {
 }
 
 std::string cell_of(const RunComparison& run, double overlap_at_start = 0.0) {
-  const std::string text = chapter_of({comparison(scene("hard/one", overlap_at_start), {run})});
+  const std::string text = chapter_of({comparison(overlapping_scene("hard/one", overlap_at_start), {run})});
   const std::size_t first = text.find("hard/one");
   const std::size_t begin = text.find('\n', first) + 1;
   return text.substr(begin, text.find('\n', begin) - begin);
 }
 
 TEST(Survival, ChapterIsAbsent_WithoutHardScenes) {
-  EXPECT_EQ(chapter_of({comparison(scene("impact/hard"), {clean("carom")})}), "");
-  EXPECT_EQ(chapter_of({comparison(scene("hardly/so"), {clean("carom")})}), "");
+  EXPECT_EQ(chapter_of({comparison(overlapping_scene("impact/hard"), {clean("carom")})}), "");
+  EXPECT_EQ(chapter_of({comparison(overlapping_scene("hardly/so"), {clean("carom")})}), "");
 }
 
 TEST(Survival, TableHasHardScenesAndTheirRunsOnly) {
-  const std::string text = chapter_of({comparison(scene("impact/one"), {clean("carom"), clean("elsewhere")}),
-                                       comparison(scene("hard/one"), {clean("carom"), clean("box2d")}),
-                                       comparison(scene("hard/two"), {clean("carom")})});
+  const std::string text =
+      chapter_of({comparison(overlapping_scene("impact/one"), {clean("carom"), clean("elsewhere")}),
+                  comparison(overlapping_scene("hard/one"), {clean("carom"), clean("box2d")}),
+                  comparison(overlapping_scene("hard/two"), {clean("carom")})});
   EXPECT_THAT(text, AllOf(HasSubstr("Scene hard/one"), HasSubstr("Scene hard/two"), HasSubstr("box2d"),
                           HasSubstr("not run"), Not(HasSubstr("impact")), Not(HasSubstr("elsewhere"))));
 }
@@ -142,7 +143,7 @@ TEST(Survival, UnknownMetric_IsNeitherRightNorFailed) {
 }
 
 TEST(Survival, SceneWithoutLimits_HasNobodyRight) {
-  const auto free = scene("hard/one");
+  const auto free = overlapping_scene("hard/one");
   free->gate = {};
   EXPECT_THAT(chapter_of({comparison(free, {clean("carom")})}), HasSubstr("○ survives"));
 }
@@ -180,7 +181,7 @@ TEST(Survival, EnergyAboveTheTruthButNotTheStart_IsNoGain) {
 
 // What is pushed for is not known: an engine that lets a pile sleep books nothing.
 TEST(Survival, MomentumUnderGravity_IsNotAsked) {
-  const auto falling = scene("hard/one");
+  const auto falling = overlapping_scene("hard/one");
   falling->effects.gravity = Vec3(0.0, -9.81, 0.0);
   const RunComparison run = with({{Metric::momentum, 0.9}, {Metric::energy_gain, 1e-3}});
   EXPECT_THAT(chapter_of({comparison(falling, {run})}), HasSubstr("○ survives"));
@@ -188,7 +189,7 @@ TEST(Survival, MomentumUnderGravity_IsNotAsked) {
 
 // A scene that lets balls pass through each other on purpose does not limit their overlap.
 TEST(Survival, LimitsOfTheScene_ComeBeforeTheCommonOnes) {
-  const auto passing = scene("hard/one");
+  const auto passing = overlapping_scene("hard/one");
   passing->gate.under_test = {{Metric::momentum, 1e-15}};
   EXPECT_THAT(chapter_of({comparison(passing, {with({{Metric::penetration, 2.0}})})}), HasSubstr("✓ right"));
 }
@@ -203,14 +204,14 @@ TEST(Survival, RunThatDidNotEndWell_SaysHow) {
 }
 
 TEST(Survival, CriteriaStandUnderTheTable_WithTheirNumbers) {
-  EXPECT_THAT(chapter_of({comparison(scene("hard/one"), {clean("carom")})}),
+  EXPECT_THAT(chapter_of({comparison(overlapping_scene("hard/one"), {clean("carom")})}),
               AllOf(HasSubstr("never has 1 % more energy"), HasSubstr("within 1 %"),
                     HasSubstr("less than 10 % of a radius")));
 }
 
 /// A scene that a whole page can be drawn of.
 SceneComparison drawable(const std::string& id) {
-  const auto made = scene(id);
+  const auto made = overlapping_scene(id);
   RunComparison run = clean("carom");
   run.run.trajectory = Trajectory(*made);
   for (std::size_t k = 0; k < run.run.trajectory.frames(); ++k) {

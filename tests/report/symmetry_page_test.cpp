@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-SceneComparison scene(const std::string& id, std::vector<SymmetryResult> checks) {
+SceneComparison checked_scene(const std::string& id, std::vector<SymmetryResult> checks) {
   auto made = std::make_shared<Scenario>();
   made->id = id;
   made->title = "Scene " + id;
@@ -44,16 +44,16 @@ std::string markup_of(std::vector<SceneComparison> scenes) {
 }
 
 TEST(SymmetryChapter, IsAbsent_WhereNoSceneAsks) {
-  EXPECT_THAT(markup_of({scene("a/b", {})}), Not(HasSubstr("section")));
+  EXPECT_THAT(markup_of({checked_scene("a/b", {})}), Not(HasSubstr("section")));
 }
 
 TEST(SymmetryChapter, HasAWordAGlyphAndAValue_ForEachVerdict) {
-  const std::string text = markup_of(
-      {scene("a/b", {result(Symmetry::mirror, SymmetryVerdict::to_the_bit, 0.0),
-                     result(Symmetry::relabel, SymmetryVerdict::to_rounding, 2e-12),
-                     result(Symmetry::boost, SymmetryVerdict::broken, 0.25),
-                     {Symmetry::reverse, SymmetryVerdict::does_not_apply, "friction loses energy", {}, {}},
-                     {Symmetry::rescale_2, SymmetryVerdict::twin_did_not_run, "crashed: x", {}, {}}})});
+  const std::string text = markup_of({checked_scene(
+      "a/b", {result(Symmetry::mirror, SymmetryVerdict::to_the_bit, 0.0),
+              result(Symmetry::relabel, SymmetryVerdict::to_rounding, 2e-12),
+              result(Symmetry::boost, SymmetryVerdict::broken, 0.25),
+              {Symmetry::reverse, SymmetryVerdict::does_not_apply, "friction loses energy", {}, {}},
+              {Symmetry::rescale_2, SymmetryVerdict::twin_did_not_run, "crashed: x", {}, {}}})});
   EXPECT_THAT(text, AllOf(HasSubstr("to the bit"), HasSubstr("to rounding"), HasSubstr("2e-12 radii"),
                           HasSubstr("breaks"), HasSubstr("0.25 radii"), HasSubstr("✓"), HasSubstr("✗"),
                           HasSubstr("does not apply"), HasSubstr("friction loses energy"),
@@ -64,9 +64,9 @@ TEST(SymmetryChapter, HasAWordAGlyphAndAValue_ForEachVerdict) {
 
 TEST(SymmetryChapter, WorstOfAllScenes_StandsInTheTable_ThenEachByItself) {
   const std::string text =
-      markup_of({scene("a/good", {result(Symmetry::boost, SymmetryVerdict::to_the_bit, 0.0)}),
-                 scene("a/bad", {result(Symmetry::boost, SymmetryVerdict::broken, 0.5)}),
-                 scene("a/worse", {result(Symmetry::boost, SymmetryVerdict::broken, 0.75)})});
+      markup_of({checked_scene("a/good", {result(Symmetry::boost, SymmetryVerdict::to_the_bit, 0.0)}),
+                 checked_scene("a/bad", {result(Symmetry::boost, SymmetryVerdict::broken, 0.5)}),
+                 checked_scene("a/worse", {result(Symmetry::boost, SymmetryVerdict::broken, 0.75)})});
   const std::string table = text.substr(0, text.find("Scene by scene"));
   EXPECT_THAT(table, AllOf(HasSubstr("0.75 radii"), HasSubstr("a/worse"), Not(HasSubstr("0.5 radii"))));
   EXPECT_THAT(text.substr(table.size()),

@@ -3,19 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "core/error.h"
 #include "core/random.h"
 #include "scenario/parse.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Two balls in a box, one second, ten frames; then what the test adds.
 ScenarioPtr scene_with(const std::string& events) {
@@ -43,7 +40,7 @@ position = [3, 2]
                      "test.toml");
 }
 
-std::string error_of(const std::string& events) {
+std::string events_error(const std::string& events) {
   try {
     scene_with(events);
   } catch (const InputError& error) {
@@ -139,26 +136,26 @@ TEST(Events, AboutABallThatIsNotThere_AreErrors_ThatNameThePlaceAndTheMoment) {
   const std::string gone = "[[event]]\ntime = 0.5\nball = 0\nremove = true\n";
   const std::string added =
       "[[event]]\ntime = 0.5\nadd_ball = { mass = 1, radius = 0.1, position = [1, 2] }\n";
-  EXPECT_EQ(error_of(gone + click(0.4, 0)), "no error");
+  EXPECT_EQ(events_error(gone + click(0.4, 0)), "no error");
   EXPECT_THAT(
-      error_of(gone + click(0.6, 0)),
+      events_error(gone + click(0.6, 0)),
       AllOf(HasSubstr("test.toml:27:"), HasSubstr("event[1].ball: found 0"), HasSubstr("at t = 0.6 s")));
-  EXPECT_EQ(error_of(added + click(0.5, 2)), "no error");
-  EXPECT_THAT(error_of(added + click(0.4, 2)), HasSubstr("event[1].ball: found 2"));
-  EXPECT_THAT(error_of(click(0.4, 2)), HasSubstr("event[0].ball: found 2"));
+  EXPECT_EQ(events_error(added + click(0.5, 2)), "no error");
+  EXPECT_THAT(events_error(added + click(0.4, 2)), HasSubstr("event[1].ball: found 2"));
+  EXPECT_THAT(events_error(click(0.4, 2)), HasSubstr("event[0].ball: found 2"));
 }
 
 TEST(Events, ThatMakeAnImpossibleBall_AreErrors) {
   const std::string event = "[[event]]\ntime = 0.5\nball = 0\n";
-  EXPECT_THAT(error_of(event + "scale_mass = 1e308\n"),
+  EXPECT_THAT(events_error(event + "scale_mass = 1e308\n"),
               AllOf(HasSubstr("scale_mass"), HasSubstr("finite and above 0")));
-  EXPECT_THAT(error_of(event + "scale_mass = 1e-323\n" + event + "scale_mass = 1e-10\n"),
+  EXPECT_THAT(events_error(event + "scale_mass = 1e-323\n" + event + "scale_mass = 1e-10\n"),
               AllOf(HasSubstr("event[1].scale_mass"), HasSubstr("finite and above 0")));
-  EXPECT_THAT(error_of(event + "scale_radius = 1e-323\n" + event + "scale_radius = 1e-10\n"),
+  EXPECT_THAT(events_error(event + "scale_radius = 1e-323\n" + event + "scale_radius = 1e-10\n"),
               HasSubstr("event[1].scale_radius"));
-  EXPECT_THAT(error_of(event + "scale_radius = 3.1\n"), HasSubstr("a diameter of 3.1 m"));
-  EXPECT_EQ(error_of(event + "scale_radius = 2.9\n"), "no error");
+  EXPECT_THAT(events_error(event + "scale_radius = 3.1\n"), HasSubstr("a diameter of 3.1 m"));
+  EXPECT_EQ(events_error(event + "scale_radius = 2.9\n"), "no error");
 }
 
 }  // namespace
-}  // namespace carom
+}  // namespace carom::test

@@ -14,17 +14,13 @@
 #include <string>
 #include <vector>
 
-namespace carom {
+#include "tests/support/numbers.h"
+
+namespace carom::test {
 
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-/// Statistical bounds are this many standard deviations: with fixed seeds a right generator misses one of
-/// them with probability 7e-6, once and for all.
-constexpr double kDeviations = 4.5;
 
 Scenario boxed(int dimension, double side = 1.0) {
   Scenario scene;
@@ -609,4 +605,4 @@ TEST(Generate, BallsInASlabOrBarrier_DoNotFit) {
 
 }  // namespace
 
-}  // namespace carom
+}  // namespace carom::test

@@ -14,8 +14,9 @@
 #include "core/error.h"
 #include "scenario/catalog.h"
 #include "scenario/features.h"
+#include "tests/support/numbers.h"
 
-namespace carom {
+namespace carom::test {
 
 namespace {
 
@@ -26,7 +27,6 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // --- scenes that are right
 // -----------------------------------------------------------------------------------
@@ -946,4 +946,4 @@ TEST(ContactLaw, IsAFeature_UnlessItIsSequential) {
 
 }  // namespace
 
-}  // namespace carom
+}  // namespace carom::test

@@ -7,16 +7,13 @@
 #include <numbers>
 #include <vector>
 
-namespace carom {
+#include "tests/support/numbers.h"
+
+namespace carom::test {
 
 namespace {
 
 constexpr std::size_t kDraws = 200'000;
-
-// Statistical bounds are this many standard deviations. The seeds are fixed, so a test that passes once
-// always does; the bound says how unlikely a pass was for a generator that is right: 1 - 7e-6 for each
-// comparison.
-constexpr double kDeviations = 4.5;
 
 std::vector<double> normals(std::uint64_t seed, std::size_t count) {
   Random random(seed);
@@ -140,4 +137,4 @@ TEST(Random, Normal_DrawsAreNotCorrelated) {
 
 }  // namespace
 
-}  // namespace carom
+}  // namespace carom::test

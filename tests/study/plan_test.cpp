@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr const char* kFlight = R"(title = "A flight"
+constexpr const char* kLongFlight = R"(title = "A flight"
 dimension = 2
 duration = 3.0
 step = 0.1
@@ -27,7 +27,7 @@ velocity = [1, 2]
 )";
 
 ScenarioPtr flight() {
-  return parse_scene(kFlight, "flight.toml");
+  return parse_scene(kLongFlight, "flight.toml");
 }
 
 std::vector<PlannedPoint> plan_of(const std::vector<EngineChoice>& engines) {
