@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/laws.h"
 #include "app/layout.h"
 #include "app/prepare.h"
 #include "app/progress.h"
@@ -34,6 +35,30 @@ ScenarioPtr scene_to_explain(const Options& options, const EngineCatalog& catalo
 std::optional<std::string> other_profile(const EngineInfo& info, const std::string& profile) {
   if (info.profiles.size() != 2) return std::nullopt;
   return info.profiles[info.profiles[0].name == profile ? 1 : 0].name;
+}
+
+/// What is to be explained: an engine in a profile, with what it says of itself.
+struct Explained {
+  EngineChoice engine;
+  EngineInfo info;
+};
+
+/// The engine of the command line; or its law of impact, whose other profile is the right law.
+Explained engine_to_explain(const Options& options, const EngineCatalog& catalog) {
+  if (options.laws.empty() && options.engines.empty()) {
+    throw InputError("explain takes --engine E or --law FILE, found neither");
+  }
+  if (options.laws.empty()) {
+    const std::vector<Participant> named =
+        participants(options, catalog, {options.timeout_s, options.memory_mib});
+    return {choose_engines(named).front(), named.front().info};
+  }
+  std::vector<LawFile> laws = load_laws(options.laws);
+  std::string asked = laws.front().id;
+  if (asked != kRightLaw) laws.push_back(load_laws({std::string(kRightLaw)}).front());
+  EngineSource source = law_source(std::move(laws));
+  EngineInfo info = source.open().info();
+  return {{std::move(source), std::move(asked)}, std::move(info)};
 }
 
 /// Runs one engine on one scene in whatever settings are asked for, and measures each run against the truth.
@@ -125,10 +150,7 @@ Metric metric_to_explain(const Options& options, const RunComparison& run) {
 ExitCode explain_command(const Options& options) {
   const EngineCatalog catalog(engine_folder(), options.engines_from);
   const ScenarioPtr scene = scene_to_explain(options, catalog);
-  const ProcessLimits limits{options.timeout_s, options.memory_mib};
-  const std::vector<Participant> named = participants(options, catalog, limits);
-  const EngineChoice engine = choose_engines(named).front();
-  const EngineInfo& info = named.front().info;
+  const auto [engine, info] = engine_to_explain(options, catalog);
 
   const Laboratory laboratory(scene, engine, options);
   RunComparison start = laboratory.run_profile(engine.profile);

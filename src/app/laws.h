@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "carom/laws/law_file.h"
@@ -8,6 +9,9 @@
 #include "trajectory/record.h"
 
 namespace carom {
+
+/// The name of the right law among those that come with Carom.
+inline constexpr std::string_view kRightLaw = "right";
 
 /// The laws that words of the command line mean: paths, or names of those that come with Carom.
 /// @throws InputError also where two of them would run under one name

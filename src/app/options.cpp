@@ -62,17 +62,21 @@ void add_run_options(CLI::App& command, Options& options) {
       ->check(not_empty());
 }
 
-void add_scene_options(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scenes, "an id, a path, a group (impact/), or all")->required();
-  command.add_option("--engine", options.engines, "an engine, or engine@profile; may be given several times")
-      ->expected(1)
-      ->take_all();
+void add_laws(CLI::App& command, Options& options) {
   command
       .add_option(
           "--law", options.laws,
           "also run carom with a law of impact from this file (carom law); may be given several times")
       ->expected(1)
       ->take_all();
+}
+
+void add_scene_options(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scenes, "an id, a path, a group (impact/), or all")->required();
+  command.add_option("--engine", options.engines, "an engine, or engine@profile; may be given several times")
+      ->expected(1)
+      ->take_all();
+  add_laws(command, options);
   add_run_options(command, options);
   command.add_flag("--all-balls", options.all_balls, "list the final state of every ball in the JSON");
 }
@@ -104,6 +108,7 @@ void add_study(CLI::App& app, Options& options) {
                    "every engine that was built)")
       ->expected(1)
       ->take_all();
+  add_laws(*study, options);
   study->add_option("--engines-from", options.engines_from, "a folder with further engine modules (*.so)")
       ->expected(1)
       ->take_all();
@@ -206,7 +211,13 @@ Parsed parse_options(int argc, char** argv) {
 
   CLI::App* explain = app.add_subcommand("explain", "which of an engine's settings explains its divergence");
   explain->add_option("SCENE", options.scenes, "an id or a path")->required()->expected(1);
-  explain->add_option("--engine", options.engines, "an engine, or engine@profile")->required()->expected(1);
+  CLI::Option* explained =
+      explain->add_option("--engine", options.engines, "an engine, or engine@profile")->expected(1);
+  explain
+      ->add_option("--law", options.laws,
+                   "carom with a law of impact from this file, against the right law; in place of an engine")
+      ->expected(1)
+      ->excludes(explained);
   explain
       ->add_option("--metric", options.metric,
                    "what is explained (default: position where there is a truth, else energy)")

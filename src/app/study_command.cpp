@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/commands.h"
+#include "app/laws.h"
 #include "app/layout.h"
 #include "app/machine.h"
 #include "app/prepare.h"
@@ -47,8 +48,13 @@ std::vector<EngineChoice> engines_by_default(const Options& options, const Engin
 
 std::vector<EngineChoice> engines_of(const Options& options, const EngineCatalog& catalog) {
   const ProcessLimits limits{ProcessLimits().wall_seconds, options.memory_mib};
-  if (options.engines.empty()) return engines_by_default(options, catalog, limits);
-  return choose_engines(participants(options, catalog, limits));
+  if (!options.engines.empty()) return choose_engines(participants(options, catalog, limits));
+  std::vector<EngineChoice> engines = engines_by_default(options, catalog, limits);
+  if (!options.laws.empty()) {
+    const std::vector<LawFile> laws = load_laws(options.laws);
+    for (const LawFile& law : laws) engines.push_back({law_source(laws), law.id});
+  }
+  return engines;
 }
 
 /// A study that is kept in a file while it goes.

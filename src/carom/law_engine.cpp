@@ -12,6 +12,9 @@ namespace carom {
 
 namespace {
 
+/// The setting in which two laws differ.
+constexpr const char* kLawSwitch = "law";
+
 /// A run under a written law, which says what it is.
 class LawSimulation final : public Simulation {
  public:
@@ -30,7 +33,7 @@ class LawSimulation final : public Simulation {
 
   Settings settings() const override {
     Settings settings = simulation_->settings();
-    settings["law"] = law_.name;
+    settings[kLawSwitch] = law_.name;
     for (const LawExpression& each : law_.definitions) settings["law_" + each.key] = each.text;
     for (const LawPush& push : law_.pushes) settings["law_" + push.value.key] = push.value.text;
     return settings;
@@ -59,6 +62,7 @@ class LawEngine final : public Engine {
         "A law after which balls approach as fast as before ends the run: they would meet again at once, for "
         "ever.",
     };
+    if (laws_.size() == 2) info.switches = {{kLawSwitch, "what two balls do when they meet"}};
     const char* one_contact = "a law file says what happens at one contact at a time";
     info.cannot = {{Feature::simultaneous, one_contact}, {Feature::generalized_reflections, one_contact}};
     return info;
@@ -69,6 +73,12 @@ class LawEngine final : public Engine {
       return "the law pushes along the surface, and without effects.spin balls cannot turn";
     }
     return {};
+  }
+
+  std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
+                                              std::span<const std::string> switched) const override {
+    if (switched.empty()) return create(scenario, profile);
+    return create(scenario, laws_[laws_[0].id == profile ? 1 : 0].id);
   }
 
   std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const override {

@@ -1112,6 +1112,15 @@ TEST_F(CommandLine, Law_RunsAsAnEngineUnderTest_BesideTheOthers) {
   EXPECT_THAT(ended.out, HasSubstr("violated: impact/head-on: carom:law@half: energy = "));
 }
 
+TEST_F(CommandLine, Explain_HoldsALawAgainstTheRightOne) {
+  const Ended ended = carom({"explain", "impact/restitution-half", "--law", "impulse-times-e"});
+  EXPECT_EQ(ended.exit_code, kHolds);
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("carom:law@impulse-times-e is off by"),
+                               HasSubstr("law comes first (what two balls do when they meet): ")));
+  EXPECT_EQ(carom({"explain", "impact/oblique"}).exit_code, kBadInput);
+  EXPECT_EQ(carom({"explain", "impact/oblique", "--law", "right", "--engine", "carom"}).exit_code, kBadInput);
+}
+
 TEST_F(CommandLine, Law_SaysWhatALawBreaks) {
   const Ended ended = carom({"law", "mirrored", "--json", "laws.json"});
   EXPECT_EQ(ended.exit_code, kHolds);

@@ -125,6 +125,16 @@ TEST_F(StudyCommand, RefusesToResume_WhatIsOfOtherLimitsOrNoStudy) {
   EXPECT_THAT(error_of({"--resume", file("pair.toml")}), HasSubstr("pair.toml: not a study"));
 }
 
+TEST_F(StudyCommand, StudiesALaw_BesideTheOthers) {
+  EXPECT_EQ(study({"--law", "right", "--json", file("law.json"), "--repeats", "1"}), ExitCode::holds);
+  const Study made = parse_study(read_file(file("law.json")), "law.json");
+  ASSERT_EQ(made.scenes.size(), 1U);
+  EXPECT_THAT(made.scenes[0].engines,
+              ::testing::ElementsAre(::testing::Field(&StudyEngine::label, "carom:step"),
+                                     ::testing::Field(&StudyEngine::label, "carom:event"),
+                                     ::testing::Field(&StudyEngine::label, "carom:law@right")));
+}
+
 TEST_F(StudyCommand, NamesWhatThereIsNot) {
   EXPECT_THAT(error_of({"--engine", "carom:warp"}), HasSubstr("carom:warp"));
   EXPECT_THROW(study_command(parsed({file("none.toml"), "--quiet"}).options), InputError);
