@@ -8,9 +8,11 @@
 
 #include "comparison/comparison.h"
 #include "comparison/conserved.h"
+#include "comparison/metrics/brought.h"
 #include "report/impacts.h"
 #include "report/json_number.h"
 #include "report/pack.h"
+#include "report/pair_tests.h"
 #include "scenario/cast.h"
 
 namespace carom {
@@ -21,6 +23,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLargest = 1 << 29;  // a first difference of two such numbers fits into 31 bits
 constexpr double kTimeUnits = 1 << 30;
+/// A person looks at the pair tests of no more balls; and counts of these fit into 31 bits.
+constexpr std::size_t kCountedBalls = 5000;
 
 Json vector_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
@@ -55,6 +59,13 @@ bool finite(const BallState& state) {
   return state.position.allFinite() && state.velocity.allFinite() && state.spin.allFinite();
 }
 
+/// What is played: a run, or the truth.
+struct Film {
+  const Trajectory* trajectory = nullptr;
+  const Run* run = nullptr;  ///< nothing: the truth
+  std::size_t known = 0;     ///< its frames; later ones say nothing
+};
+
 /// The number of frames until the first that is not finite.
 std::size_t known_frames(const Trajectory& trajectory) {
   for (std::size_t k = 0; k < trajectory.frames(); ++k) {
@@ -65,8 +76,7 @@ std::size_t known_frames(const Trajectory& trajectory) {
   return trajectory.frames();
 }
 
-Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories,
-               const PlaybackLimits& limits) {
+Grids grids_of(const Scenario& scenario, const std::vector<Film>& films, const PlaybackLimits& limits) {
   double radius = std::numeric_limits<double>::infinity();
   ever(scenario, [&](const Ball& ball) {
     radius = std::min(radius, ball.radius);
@@ -75,9 +85,8 @@ Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& t
   double farthest = 0.0;
   double fastest = 0.0;
   double spin = 0.0;
-  for (const Trajectory* trajectory : trajectories) {
-    const std::size_t frames = known_frames(*trajectory);
-    for (std::size_t k = 0; k < frames; ++k) {
+  for (const auto& [trajectory, run, known] : films) {
+    for (std::size_t k = 0; k < known; ++k) {
       for (std::size_t i = 0; i < trajectory->balls(); ++i) {
         if (!trajectory->present(k, i)) continue;
         const BallState& state = trajectory->frame(k)[i];
@@ -92,8 +101,7 @@ Grids grids_of(const Scenario& scenario, const std::vector<const Trajectory*>& t
           grid(std::ldexp(spin, -limits.speed_bits), spin)};
 }
 
-Cut cut_of(const Scenario& scenario, const std::vector<const Trajectory*>& trajectories,
-           const PlaybackLimits& limits) {
+Cut cut_of(const Scenario& scenario, const std::vector<Film>& films, const PlaybackLimits& limits) {
   Cut cut;
   cut.balls = std::min(numbered_balls(scenario), limits.balls);
   const auto intervals = static_cast<std::size_t>(scenario.frames);
@@ -101,7 +109,7 @@ Cut cut_of(const Scenario& scenario, const std::vector<const Trajectory*>& traje
   cut.every = most > intervals ? 1 : (intervals + most - 2) / (most - 1);
   for (std::size_t k = 0; k < intervals; k += cut.every) cut.frames.push_back(k);
   cut.frames.push_back(intervals);
-  cut.grids = grids_of(scenario, trajectories, limits);
+  cut.grids = grids_of(scenario, films, limits);
   return cut;
 }
 
@@ -177,6 +185,26 @@ std::string pack_counted(const Trajectory& trajectory, std::span<const std::size
   return pack_integers(changes);
 }
 
+/// First differences.
+std::string pack_counts(const std::vector<std::int64_t>& counts) {
+  std::vector<std::int32_t> changes;
+  std::int64_t last = 0;
+  for (const std::int64_t count : counts) {
+    changes.push_back(static_cast<std::int32_t>(count - last));
+    last = count;
+  }
+  return pack_integers(changes);
+}
+
+/// What events brought and took until each of these frames, J.
+std::string pack_added(const Reference& reference, const Run& run, std::span<const std::size_t> frames) {
+  const std::vector<Conserved> brought = brought_by_events(reference, run);
+  std::vector<double> added;
+  added.reserve(frames.size());
+  for (const std::size_t k : frames) added.push_back(brought[k].energy_J);
+  return pack_doubles(added);
+}
+
 void add_impacts(Json& json, const Scenario& scenario, const Trajectory& trajectory, const Cut& cut,
                  std::size_t most) {
   const SeenImpacts seen = find_impacts(scenario, trajectory, most);
@@ -201,10 +229,11 @@ void add_impacts(Json& json, const Scenario& scenario, const Trajectory& traject
   json["more_impacts"] = seen.more;
 }
 
-void add_states(Json& json, const Reference& reference, const Trajectory& trajectory, const Cut& cut,
+void add_states(Json& json, const Reference& reference, const Film& film, const Cut& cut,
                 const PlaybackLimits& limits) {
   const Scenario& scenario = *reference.scenario;
-  const std::size_t known = known_frames(trajectory);
+  const auto& [film_trajectory, run, known] = film;
+  const Trajectory& trajectory = *film_trajectory;
   const auto end = std::lower_bound(cut.frames.begin(), cut.frames.end(), known);
   const std::span<const std::size_t> frames(cut.frames.begin(), end);
   const bool plane = scenario.dimension == 2;
@@ -221,6 +250,12 @@ void add_states(Json& json, const Reference& reference, const Trajectory& trajec
   }
   json["energy"] = pack_energies(reference, trajectory, frames);
   json["counted"] = pack_counted(trajectory, frames);
+  if (scenario.effects.collisions && trajectory.balls() <= kCountedBalls) {
+    const PairTests tests = count_pair_tests(scenario, trajectory, frames);
+    json["brute_force_tests"] = pack_counts(tests.brute_force);
+    json["tree_tests"] = pack_counts(tests.tree);
+  }
+  if (run != nullptr && !scenario.events.empty()) json["added"] = pack_added(reference, *run, frames);
   if (known == trajectory.frames()) add_impacts(json, scenario, trajectory, cut, limits.impacts);
 }
 
@@ -346,7 +381,8 @@ class Runs {
   Runs(const Reference& reference, const Cut& cut, const PlaybackLimits& limits)
       : reference_(reference), cut_(cut), limits_(limits) {}
 
-  void add(Json about, const Trajectory& trajectory) {
+  void add(Json about, const Film& film) {
+    const Trajectory& trajectory = *film.trajectory;
     const std::string label = about.at("label");
     for (const auto& [other, states] : written_) {
       if (!same_states(*states, trajectory)) continue;
@@ -354,7 +390,7 @@ class Runs {
       json_.push_back(std::move(about));
       return;
     }
-    add_states(about, reference_, trajectory, cut_, limits_);
+    add_states(about, reference_, film, cut_, limits_);
     const std::size_t bytes = about.dump().size();
     if (!written_.empty() && bytes_ + bytes > limits_.bytes) {
       left_out_.push_back(label);
@@ -399,30 +435,48 @@ std::string without_markup(const std::string& json) {
   return text;
 }
 
-std::vector<const Trajectory*> played(const std::vector<const Run*>& runs, const Truth* truth) {
-  std::vector<const Trajectory*> trajectories;
-  if (truth != nullptr) trajectories.push_back(&truth->trajectory);
-  for (const Run* run : runs) {
-    if (plays(*run)) trajectories.push_back(&run->trajectory);
+/// The truth knows nothing of what events do, whatever stands in its frames after the first of them.
+Film film_of(const Truth& truth, const Scenario& scenario) {
+  std::size_t known = known_frames(truth.trajectory);
+  if (!scenario.events.empty()) {
+    known = std::min(known, static_cast<std::size_t>(first_frame_after(scenario, scenario.events.front())));
   }
-  return trajectories;
+  return {&truth.trajectory, nullptr, known};
+}
+
+/// Those that end well, the truth first.
+std::vector<Film> films_of(const Scenario& scenario, const std::vector<const Run*>& runs,
+                           const Truth* truth) {
+  std::vector<Film> films;
+  if (truth != nullptr) films.push_back(film_of(*truth, scenario));
+  for (const Run* run : runs) {
+    if (plays(*run)) films.push_back({&run->trajectory, run, known_frames(run->trajectory)});
+  }
+  return films;
 }
 
 }  // namespace
 
 PlaybackText write_playback(const Scenario& scenario, const std::vector<const Run*>& runs, const Truth* truth,
                             const PlaybackLimits& limits) {
+  const std::string no_truth = truth != nullptr && !truth->known() ? truth->reason : "";
   if (truth != nullptr && (!truth->known() || truth->trajectory.frames() == 0)) truth = nullptr;
-  const Cut cut = cut_of(scenario, played(runs, truth), limits);
+  const std::vector<Film> films = films_of(scenario, runs, truth);
+  const Cut cut = cut_of(scenario, films, limits);
   const Reference reference(scenario);
   Runs written(reference, cut, limits);
+  auto film = films.begin();
   if (truth != nullptr) {
     written.add({{"label", "truth"}, {"engine", "truth"}, {"status", "ok"}, {"reason", truth->kind}},
-                truth->trajectory);
+                *film++);
+  }
+  if (!no_truth.empty()) {
+    written.add_without_states(
+        {{"label", "truth"}, {"engine", "truth"}, {"status", "unsupported"}, {"reason", no_truth}});
   }
   for (const Run* run : runs) {
     if (plays(*run)) {
-      written.add(run_json(*run), run->trajectory);
+      written.add(run_json(*run), *film++);
     } else {
       written.add_without_states(run_json(*run));
     }

@@ -42,8 +42,10 @@ struct PlaybackLimits {
 ///               same states, to the bit), or positions, velocities and spins (where balls can spin), energy
 ///               (J, packed doubles: translation, rotation, potential of every frame, one after the other),
 ///               counted (the impacts that the engine counted until each frame), impacts (times in units of
-///               duration · 2⁻³⁰; ball; other), more_impacts: whether there are more. The truth is labelled
-///               "truth" and may end earlier; `known` is its number of frames.
+///               duration · 2⁻³⁰; ball; other), more_impacts: whether there are more. Where balls can meet,
+///               brute_force_tests and tree_tests (pair_tests.h) of each frame; where there are events, added
+///               (J, packed doubles: what they brought until each frame). The truth is labelled "truth" and
+///               may end earlier; `known` is its number of frames. Where there is none its reason says why.
 ///   left_out    labels of the runs that the limit of bytes leaves out
 ///
 /// Integers and doubles are packed as in pack.h. Positions are whole multiples of rounding.position_m, second

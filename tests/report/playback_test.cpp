@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -273,6 +274,43 @@ TEST(Playback, EndsATruthWhereItIsNotKnown) {
   EXPECT_EQ(json["runs"][0]["label"], "truth");
   EXPECT_EQ(json["runs"][0]["known"], 6);
   EXPECT_EQ(json["runs"][1]["known"], 11);
+}
+
+TEST(Playback, EndsATruthBeforeTheFirstEvent) {
+  const ScenarioPtr scene = scene_of(
+      "title = \"t\"\ndimension = 2\nduration = 4.0\nstep = 0.01\nframes = 40\n"
+      "[[ball]]\nmass = 1.0\nradius = 0.1\nposition = [3, 0]\nvelocity = [1, 0]\n"
+      "[[event]]\ntime = 1.0\nball = 0\nscale_mass = 1.1\n");
+  Truth truth;
+  truth.kind = "exact";
+  truth.trajectory = run_of(*scene).trajectory;
+  const Json json = Json::parse(playback_json(*scene, {}, &truth));
+  EXPECT_EQ(json["runs"][0]["known"], 10);
+}
+
+TEST(Playback, SaysWhyThereIsNoTruth) {
+  const ScenarioPtr scene = gas(2, 3, 0.01, 12.0, 2);
+  const Recorded run = run_of(*scene);
+  Truth truth;
+  truth.reason = "nobody knows";
+  const Json json = Json::parse(playback_json(*scene, {&run}, &truth));
+  EXPECT_EQ(json["runs"][0]["label"], "truth");
+  EXPECT_EQ(json["runs"][0]["reason"], "nobody knows");
+}
+
+TEST(Playback, TellsThePairTests_ThatCaromsBroadPhasesCount) {
+  const ScenarioPtr scene = gas(2, 200, 0.1, 50.0, 3);
+  const Recorded run = run_of(*scene, "carom:toi");
+  const Json it = played(*scene, run)["runs"][0];
+  // The first frame's count, then none more in the others: all pairs are all pairs wherever the balls are.
+  const std::vector<std::int64_t> brute_force = integers(it["brute_force_tests"]);
+  EXPECT_EQ(brute_force.front(), 200 * 199 / 2);
+  EXPECT_EQ(std::count(brute_force.begin(), brute_force.end(), 0),
+            static_cast<std::ptrdiff_t>(run.trajectory.frames()) - 1);
+  const std::vector<std::int64_t> tree = integers(it["tree_tests"]);
+  EXPECT_EQ(tree.size(), run.trajectory.frames());
+  EXPECT_GT(tree.front(), 200);
+  EXPECT_LT(tree.front(), 200 * 199 / 4);
 }
 
 // Balls of 0.1 m, 2 m apart, one at 1 m/s: they touch at t = 1.8 s.

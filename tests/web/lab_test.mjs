@@ -64,10 +64,14 @@ test("Lab_OpensEveryModeOfTheCourse", async () => {
 
 test("Lab_PutsAnotherEngineBesideTheFirst", async () => {
   await openMode("course/thin-slab");
-  await page.locator(".cv-engine-b").selectOption("carom:step").catch(() => page.locator(".cv-engine-b").selectOption("box2d"));
+  assert.deepEqual(await page.locator(".cv-name").allInnerTexts(), ["carom:step", "carom"]);
+  await openMode("course/velocity-arrows");
+  assert.equal(await page.locator(".cv-name").count(), 1);
+  await page.locator(".cv-engine-b").selectOption("carom:step");
   await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 2);
   assert.equal(await page.locator(".cv-name").count(), 2);
   await page.locator(".cv-engine-b").selectOption("");
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 1);
 });
 
 test("Lab_MakesABallHeavier_AndTheFileSaysSo", async () => {
@@ -85,6 +89,64 @@ test("Lab_MakesABallHeavier_AndTheFileSaysSo", async () => {
   await lab("(lab) => lab.viewer.goTo(2)");
   await page.waitForFunction((m) => document.getElementById("lab").caromLab.viewer.bodies.masses[2] > m, before);
   assert.ok(Math.abs(await lab("(lab) => lab.viewer.bodies.masses[2]") - 1.1 * before) < 1e-12 * before);
+});
+
+/** A finger that rests on the middle of a ball for so long. */
+async function touchBall(ball, rest_ms) {
+  const [x, y] = await page.evaluate((wanted) => {
+    const { stage } = document.getElementById("lab").caromLab.viewer;
+    stage.canvas.scrollIntoView({ block: "center" });
+    const box = stage.canvas.getBoundingClientRect();
+    const on = [];
+    for (let px = box.left + 2; px < box.right; px += 4) {
+      for (let py = box.top + 2; py < box.bottom; py += 4) if (stage.ballAt(px, py)?.ball === wanted) on.push([px, py]);
+    }
+    return on[on.length >> 1];
+  }, ball);
+  const session = await page.context().newCDPSession(page);
+  await session.send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  // A tap's two ends are sent together: however slow the machine, no time passes between them on the page.
+  const down = session.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [{ x, y }] });
+  if (rest_ms > 0) await down.then(() => page.waitForTimeout(rest_ms));
+  await Promise.all([down, session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] })]);
+  await session.send("Emulation.setTouchEmulationEnabled", { enabled: false });
+  await session.detach();
+}
+
+test("Lab_TakesATapForAClick_AndALongPressForARightClick", async () => {
+  await openMode("course/impulse");
+  await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.goTo(1); }");
+  for (const [rest_ms, factor] of [[0, 1.1], [900, 0.9]]) {
+    const events = await lab("(lab) => lab.viewer.playback.scene.events.length");
+    await touchBall(0, rest_ms);
+    await page.waitForFunction((n) => document.getElementById("lab").caromLab.viewer?.playback.scene.events.length === n + 1, events);
+    await settled();
+    assert.match(await page.locator(".lab-toml").inputValue(), new RegExp(`ball = 0\\nscale_mass = ${factor}\\n[^[]*$`));
+  }
+  // What hands have done is named as theirs, and no gain of the engine's.
+  await lab("(lab) => lab.viewer.goTo(2)");
+  await page.waitForFunction(() => document.querySelector(".cv-energy-added")?.offsetParent);
+  assert.equal(Number(await page.locator(".cv-energy-lost").getAttribute("data-value")), 0);
+});
+
+test("Lab_TellsTheEnginesOwnPairTests", async () => {
+  await openMode("course/brute-force");
+  const told = /(\d+) by brute force, (\d+) with its quadtree/.exec(await page.locator(".cv-counts").innerText());
+  assert.equal(Number(told[1]), 1770);
+  assert.ok(Number(told[2]) > 0 && Number(told[2]) < 1770, told[0]);
+});
+
+test("Lab_PutsTheExactSolutionBeside_UntilSomebodyInterferes", async () => {
+  await openMode("course/impulse");
+  await page.locator(".cv-engine-b").selectOption("truth");
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 2);
+  await settled();
+  await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.goTo(5); }");
+  await page.waitForFunction(() => [...document.querySelectorAll(".cv-name")].some((e) => e.textContent.startsWith("exact solution, known until 2.9")));
+  assert.match(await page.locator(".cv-about").innerText(), /exact solution is known until 2\.9\d* s: there a ball is changed by hand/);
+  await openMode("course/quantum-barrier");
+  assert.match(await error(), /exact solution: /);
+  await page.locator(".cv-engine-b").selectOption("");
 });
 
 test("Lab_JudgesALaw_AndNamesAMistake", async () => {

@@ -112,7 +112,7 @@ test("Report_ObeysItsKeys", async () => {
     await press(key);
     assert.equal(await pressed(name), "true", name);
   }
-  assert.match(await viewer.locator(".cv-counts").innerText(), /Pair tests now: 1 with the tree, 1 by brute force/);
+  assert.match(await viewer.locator(".cv-counts").innerText(), /Pair tests in this frame, as Carom counts them: 1 by brute force, 1 with its quadtree/);
   await press("ArrowRight", "ArrowRight");
   assert.ok(Math.abs(await time(viewer) - 2 * duration / frames) < 1e-9);
   await press("ArrowLeft");

@@ -13,6 +13,11 @@ import { fragmentOf, sharedIn } from "./share.js";
 const kHeavier = { scale_mass: 1.1, scale_radius: 1.05 };
 const kLighter = { scale_mass: 0.9, scale_radius: 0.95 };
 const kTools = ["choose", "heavier", "lighter"];
+// The modes as the course comes to them; others of the course follow.
+const kOrder = ["normal-mode", "brute-force", "quadtree", "octree", "impulse", "velocity-arrows", "effet", "thin-slab", "quantum-barrier"]
+  .map((name) => `course/${name}`);
+const kFirstTool = { "course/impulse": "heavier" };
+const kFirstEngines = { "course/thin-slab": ["carom:step", "carom"] };
 const kFirstToggles = {
   "course/velocity-arrows": { velocity: true }, "course/quadtree": { tree: true }, "course/octree": { tree: true },
   "course/impulse": { impulse: true },
@@ -57,7 +62,7 @@ class Lab {
     this.say();
     const shared = await sharedIn(location.hash);
     if (shared) await this.openShared(shared);
-    else await this.openMode(decodeURIComponent(/^#m=(.+)$/.exec(location.hash)?.[1] ?? "") || this.modes[0]?.id);
+    else await this.openMode(decodeURIComponent(/^#m=(.+)$/.exec(location.hash)?.[1] ?? "") || (this.modes.find(({ id }) => id === kOrder[0]) ?? this.modes[0])?.id);
     addEventListener("hashchange", async () => {
       const next = await sharedIn(location.hash);
       if (next) this.openShared(next);
@@ -75,9 +80,22 @@ class Lab {
       this.law = null;
       this.viewer?.close();
       this.viewer = null;
+      this.tool = kFirstTool[id] ?? "choose";
+      this.chooseFirst(kFirstEngines[id]);
       history.replaceState(null, "", `#m=${encodeURIComponent(id)}`);
       await this.run(toml, { toggles: kFirstToggles[id], autoplay: true });
     });
+  }
+
+  /** The engines with which a mode begins; what a person chose before comes back with the next mode. */
+  chooseFirst(engines) {
+    if (engines) {
+      this.before ??= this.chosen;
+      this.chosen = engines;
+    } else if (this.before) {
+      this.chosen = this.before;
+      this.before = null;
+    }
   }
 
   async openShared({ toml, engines, law, id }) {
@@ -101,7 +119,8 @@ class Lab {
 
   /** Runs the scene in the chosen engines and plays it on from where the last one was. */
   async run(toml, options, remember = false) {
-    const request = { toml, engines: this.chosen.filter((label) => label && !label.startsWith(kLawEngine)) };
+    const engines = this.chosen.filter((label) => label && label !== kTruth && !label.startsWith(kLawEngine));
+    const request = { toml, engines: engines.length > 0 ? engines : ["carom"], truth: this.chosen.includes(kTruth) };
     if (this.law) request.law = lawToml(this.law);
     this.busy.textContent = language.words.lab.running;
     const playback = await api.run(request).finally(() => { this.busy.textContent = ""; });
@@ -113,23 +132,26 @@ class Lab {
     this.viewer?.close();
     const own = playback.runs.find((run) => run.engine === kLawEngine)?.label;
     const [first, second] = this.chosen;
-    const engines = own && this.law ? [first || own, own] : [first, second];
+    const labels = own && this.law ? [first || own, own] : [first, second];
     const host = make("div");
     this.viewerHost.replaceChildren(host);
     this.viewer = await Viewer.mount(host, playback, {
-      ...kept, ...options, engines, global: true, choices: this.choices(own), toggles: { ...kept.toggles, ...options.toggles },
+      ...kept, ...options, engines: labels, global: true, choices: this.choices(own), toggles: { ...kept.toggles, ...options.toggles },
       onEngines: (labels) => this.chooseEngines(labels), onBall: (found) => this.clickedBall(found),
     });
     host.caromViewer = this.viewer;
     this.say();
+    const failed = playback.runs.filter((run) => labels.includes(run.label) && run.status !== "ok");
+    this.error.textContent = failed.map((run) => language.words.notThere(language.words.label(run.label), run.reason || run.status)).join("\n");
   }
 
   choices(own) {
-    return own ? [...this.engines, own] : this.engines;
+    return [...this.engines, ...(own ? [own] : []), kTruth];
   }
 
   chooseEngines(labels) {
     this.chosen = labels;
+    this.before = null;
     return this.guarded(() => this.run(this.toml, { engines: labels }));
   }
 
@@ -139,7 +161,7 @@ class Lab {
     this.ball = ball;
     this.sayTools();
     const lighter = this.tool === "lighter" || pressed === 2;
-    if (this.tool === "choose" && !this.viewer.toggles.impulse) return;
+    if (this.tool === "choose") return;
     this.change(lighter ? kLighter : kHeavier, time);
   }
 
@@ -205,7 +227,8 @@ class Lab {
 
   sayMenu() {
     const { lab } = language.words;
-    const course = this.modes.filter(({ id }) => id.startsWith("course/"));
+    const place = ({ id }) => (kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length);
+    const course = this.modes.filter(({ id }) => id.startsWith("course/")).sort((a, b) => place(a) - place(b));
     const others = this.modes.filter(({ id }) => !id.startsWith("course/"));
     const entries = course.map((mode) => {
       const made = button("lab-mode", () => this.openMode(mode.id));
@@ -251,6 +274,7 @@ class Lab {
 }
 
 const kLawEngine = "carom:law";
+const kTruth = "truth";
 
 function grouped(modes) {
   const groups = new Map();

@@ -1,26 +1,12 @@
 import uPlot from "uplot";
 import { css } from "./colours.js";
 import { make } from "./dom.js";
+import { energiesAt, kParts } from "./energies.js";
 import { language } from "./words/words.js";
 
-const kParts = ["translation", "rotation", "potential"];
+const kTold = [...kParts, "lost", "added"];
+const kBelowZero = { lost: "gained", added: "taken" };
 const kDrawnMomenta = 150;
-
-/** The energies of a run at a time: between two frames as they are on the line between them. */
-export function energiesAt(motion, time) {
-  const k = motion.frameAt(Math.min(time, motion.end));
-  const next = Math.min(k + 1, motion.frames - 1);
-  const h = motion.times[next] - motion.times[k];
-  const share = h > 0 ? Math.min(Math.max((time - motion.times[k]) / h, 0), 1) : 0;
-  // Energy jumps at an impact and does not slide: what is shown is that of the nearer frame.
-  const frame = share < 0.5 ? k : next;
-  const at = Object.fromEntries(kParts.map((part) => [part, motion[part][frame]]));
-  const start = kParts.reduce((sum, part) => sum + motion[part][0], 0);
-  const now = kParts.reduce((sum, part) => sum + at[part], 0);
-  // In single precision a sum of energies is right to about 10⁻⁷: less is not called lost.
-  const lost = Math.abs(start - now) > 1e-9 * Math.abs(start) ? start - now : 0;
-  return { ...at, lost, start, total: now };
-}
 
 /** A stacked bar for each run, its parts told in words beside it. */
 export class EnergyBars {
@@ -36,14 +22,14 @@ export class EnergyBars {
       const energies = energiesAt(motion, time);
       const row = this.rows[index];
       row.name.textContent = motion.about.label;
-      const whole = Math.max(energies.start, energies.total) || 1;
-      for (const part of [...kParts, "lost"]) {
+      const whole = Math.max(energies.start, energies.start + energies.added, energies.total) || 1;
+      for (const part of kTold) {
         const value = energies[part];
-        row.parts[part].style.width = `${Math.max(0, 100 * value / whole)}%`;
+        if (part !== "added") row.parts[part].style.width = `${Math.max(0, 100 * value / whole)}%`;
         const { number, term, item } = row.numbers[part];
         number.textContent = `${language.number(Math.abs(value), 5)} J`;
         number.dataset.value = value;
-        term.textContent = part === "lost" && value < 0 ? words.energies.gained : words.energies[part];
+        term.textContent = words.energies[value < 0 ? kBelowZero[part] ?? part : part];
         item.hidden = part !== "translation" && !motion[part]?.some((x) => x !== 0) && value === 0;
       }
     });
@@ -57,12 +43,14 @@ export class EnergyBars {
       const numbers = {};
       const bar = make("div", { className: "cv-bar", "aria-hidden": "true" });
       const list = make("ul", { className: "cv-parts" });
-      for (const part of [...kParts, "lost"]) {
-        parts[part] = make("span", { className: `cv-part cv-${part}` });
-        bar.append(parts[part]);
+      for (const part of kTold) {
         const number = make("output", { className: `cv-number cv-energy-${part}` });
         const term = make("span", {}, words.energies[part]);
         const item = make("li", {}, make("span", { className: `cv-key cv-${part}`, "aria-hidden": "true" }), term, " ", number);
+        if (part !== "added") {
+          parts[part] = make("span", { className: `cv-part cv-${part}` });
+          bar.append(parts[part]);
+        }
         numbers[part] = { number, term, item };
         list.append(item);
       }
@@ -118,6 +106,7 @@ export class OverTime {
             u.ctx.save();
             u.ctx.strokeStyle = css(theme.ink);
             u.ctx.lineWidth = 2;
+            u.ctx.setLineDash([]);
             u.ctx.beginPath();
             u.ctx.moveTo(x, u.bbox.top);
             u.ctx.lineTo(x, u.bbox.top + u.bbox.height);

@@ -7,6 +7,8 @@ import { language, languages } from "./words/words.js";
 
 const kSwitches = [["velocity", "V"], ["impulse", "3"], ["momentum", "M"], ["spin", "E"], ["trails", "T"], ["tree", "Q"], ["centre", "C"], ["frame", ""]];
 const kTurn = 0.12;
+// Modes about how pairs are found: the number of tests is told with or without the tree.
+const kCountedModes = ["course/brute-force", "course/quadtree", "course/octree"];
 
 /** Menus, buttons and keys of a viewer. Everything that a pointer can do, the keyboard can. */
 export class Controls {
@@ -99,8 +101,9 @@ export class Controls {
     for (const [name, text] of Object.entries(this.labels)) text.textContent = words[name];
     const there = viewer.playback.played.map((run) => run.label);
     const played = viewer.options.choices ? [...new Set([...viewer.options.choices, ...there])] : there;
-    this.fill(this.engines[0], played.map((label) => [label, label]), viewer.labels[0]);
-    this.fill(this.engines[1], [["", words.none], ...played.filter((l) => l !== viewer.labels[0]).map((label) => [label, label])], viewer.labels[1]);
+    const options = played.map((label) => [label, words.label(label)]);
+    this.fill(this.engines[0], options, viewer.labels[0]);
+    this.fill(this.engines[1], [["", words.none], ...options.filter(([label]) => label !== viewer.labels[0])], viewer.labels[1]);
     this.fill(this.layout, Object.entries(words.layouts), viewer.layout);
     this.fill(this.colouring, Object.entries(words.colourings), viewer.colouring);
     this.language.value = language.id;
@@ -195,14 +198,14 @@ export class Controls {
     const { viewer } = this;
     const { words } = language;
     const lines = [];
-    const tests = viewer.tree;
-    if (tests && viewer.toggles.tree) lines.push(words.tests(tests.tests, tests.bruteForce));
-    else if (viewer.playback.scene.id === "course/brute-force") {
-      const n = viewer.playback.balls.count;
-      lines.push(words.bruteForce(n * (n - 1) / 2));
-    }
+    const { dimension, id } = viewer.playback.scene;
+    const tests = viewer.toggles.tree || kCountedModes.includes(id) ? viewer.tests() : null;
+    if (tests) lines.push(words.tests(tests.bruteForce, tests.tree, words.toggles.tree[dimension - 2]));
     const barrier = viewer.barrier();
-    if (barrier) lines.push(words.barrier(barrier.sent, barrier.back, barrier.all, language.number(barrier.expected, 5), language.number(barrier.error, 2)));
+    if (barrier) {
+      const { sent, back, all, expected, error } = barrier;
+      lines.push(words.barrier(sent, back, all, language.number(expected, 5), language.number(error, 2), language.number(sent / (sent + back))));
+    }
     const slab = viewer.slab();
     if (slab) lines.push(words.slab(slab.beyond, slab.all));
     const apart = viewer.apartNow();

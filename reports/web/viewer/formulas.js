@@ -7,14 +7,15 @@ const o = (operator) => `<mo>${operator}</mo>`;
 const sub = (a, b) => `<msub>${a}${b}</msub>`;
 const sup = (a, b) => `<msup>${a}${b}</msup>`;
 const over = (a, b) => `<mfrac>${row(a)}${row(b)}</mfrac>`;
-const vec = (name) => `<mi mathvariant="bold">${name}</mi>`;
+const vec = (name) => `<mi mathvariant="normal" class="cv-vector">${name}</mi>`;
+const thin = `<mspace width="0.17em"></mspace>`;
 const math = (...parts) => `<math display="block">${parts.join("")}</math>`;
 
 const free = math(i("x"), o("("), i("t"), o(")"), o("="), sub(i("x"), n(0)), o("+"), sub(i("v"), i("x")), i("t"), o(","),
   o("&#8195;"), sub(i("v"), i("x")), o("→"), o("−"), sub(i("v"), i("x")));
 const pairs = math(over(row(i("n"), o("("), i("n"), o("−"), n(1), o(")")), n(2)), o(","), o("&#8195;"),
   o("|"), sub(vec("x"), n(1)), o("−"), sub(vec("x"), n(2)), o("|"), o("≤"), sub(i("r"), n(1)), o("+"), sub(i("r"), n(2)));
-const tree = math(i("O"), o("("), i("n"), i("log"), i("n"), o(")"), o("≪"), over(row(i("n"), o("("), i("n"), o("−"), n(1), o(")")), n(2)));
+const tree = math(i("O"), o("("), i("n"), thin, i("log"), thin, i("n"), o(")"), o("≪"), over(row(i("n"), o("("), i("n"), o("−"), n(1), o(")")), n(2)));
 const impulse = math(i("J"), o("="), o("−"), over(row(n(1), o("+"), i("e")), row(n(1), o("/"), sub(i("m"), n(1)), o("+"), n(1), o("/"), sub(i("m"), n(2)))),
   o("("), sub(vec("v"), n(1)), o("−"), sub(vec("v"), n(2)), o(")"), o("·"), vec("n"), o(","), o("&#8195;"),
   i("Δ"), sub(vec("v"), n(1)), o("="), over(i("J"), sub(i("m"), n(1))), vec("n"), o(","), o("&#8195;"),

@@ -1,6 +1,7 @@
 // WebGL2: each ball is a square that is turned to the eye, in which a ray is cast at the sphere. So a ball is round at
 // every size, and its texture shows how it is turned.
 
+// A ball is drawn at least as wide as three pixels, so that none is too small to be seen.
 const kBallVertex = `#version 300 es
 layout(location=0) in vec4 sphere;
 layout(location=1) in vec4 turned;
@@ -15,7 +16,7 @@ flat out vec4 q, tint;
 flat out vec2 shape;
 void main() {
   centre = (view * vec4(sphere.xyz, 1.0)).xyz;
-  radius = sphere.w;
+  radius = max(sphere.w, 1.5 * pixel * (flatView > 0.5 ? 1.0 : length(centre)));
   q = turned; tint = colour; shape = look;
   vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
   vec3 z = flatView > 0.5 ? vec3(0.0, 0.0, -1.0) : normalize(centre);

@@ -37,9 +37,11 @@ export class Panels {
     if (playback.frames.every > 1) facts.push(words.thinned(playback.frames.every));
     if (playback.leftOut.length > 0) facts.push(words.leftOut(playback.leftOut.join(", ")));
     for (const motion of motions) {
-      if (motion.frames < playback.times.length) facts.push(words.ended(motion.about.label, language.number(motion.end)));
+      if (motion.frames === playback.times.length) continue;
+      const ended = motion.about.label === "truth" && playback.scene.events.length > 0 ? words.truthEnded : words.ended;
+      facts.push(ended(words.label(motion.about.label), language.number(motion.end)));
     }
-    for (const run of playback.runs) if (run.status !== "ok") facts.push(words.notThere(run.label, run.reason || run.status));
+    for (const run of playback.runs) if (run.status !== "ok") facts.push(words.notThere(words.label(run.label), run.reason || run.status));
     this.about.replaceChildren(...facts.map((fact) => make("p", {}, fact)));
     this.stale = true;
   }

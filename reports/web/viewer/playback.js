@@ -29,6 +29,12 @@ export async function unpackDoubles(text) {
   return new Float64Array(ordered.buffer);
 }
 
+/** Sums of first differences, in place. */
+function addUp(numbers) {
+  for (let k = 1; k < numbers.length; k += 1) numbers[k] += numbers[k - 1];
+  return numbers;
+}
+
 /**
  * A quantity of all balls in all frames, three numbers each: index 3 (frame * balls + ball) + axis.
  * @param order 1: first differences over the frames, 2: second ones
@@ -113,7 +119,10 @@ export class Playback {
     const { position_m, speed_mps, spin_radps } = this.rounding;
     const energy = await unpackDoubles(packed.energy);
     const counted = await unpackIntegers(packed.counted);
-    for (let k = 1; k < counted.length; k += 1) counted[k] += counted[k - 1];
+    addUp(counted);
+    const tests = packed.tree_tests
+      ? { bruteForce: addUp(await unpackIntegers(packed.brute_force_tests)), tree: addUp(await unpackIntegers(packed.tree_tests)) }
+      : null;
     return {
       frames: packed.known,
       positions: await unpackStates(packed.positions, { ...shape, axes, grid: position_m, order: 2 }),
@@ -125,6 +134,8 @@ export class Playback {
       rotation: energy.subarray(packed.known, 2 * packed.known),
       potential: energy.subarray(2 * packed.known),
       counted,
+      tests,
+      added: packed.added ? await unpackDoubles(packed.added) : new Float64Array(packed.known),
       impacts: packed.impacts ? await unpackImpacts(packed.impacts, this.scene.duration) : [],
       moreImpacts: packed.more_impacts ?? false,
     };

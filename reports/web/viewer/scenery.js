@@ -77,12 +77,20 @@ export function pictureOf(shot) {
   drawArrows(picture, shot);
   if (toggles.centre || toggles.frame) drawCentre(picture, shot);
   if (toggles.tree) {
-    shot.tree = divide(state, bodies.radii, motion.scene.dimension, motion.scene.box);
-    for (const { centre, half, depth } of shot.tree.cells) {
-      picture.cube(centre, [half, half, half], theme.tree, motion.scene.dimension, Math.max(0.9 - 0.1 * depth, 0.35));
-    }
+    drawTree(picture, shot);
   }
   return picture;
+}
+
+/** The cells as far as they lie in the box: outside of it there is no ball to look for. */
+function drawTree(picture, { motion, state, bodies, theme }) {
+  const { dimension, box } = motion.scene;
+  const within = (x, c) => (box ? Math.min(Math.max(x, box.min[c]), box.max[c]) : x);
+  for (const { centre, half, depth } of divide(state, bodies, dimension).cells) {
+    const [low, high] = [-half, half].map((side) => centre.map((x, c) => within(x + side, c)));
+    picture.cube(low.map((x, c) => 0.5 * (x + high[c])), low.map((x, c) => 0.5 * (high[c] - x)), theme.tree, dimension,
+      Math.max(0.9 - 0.1 * depth, 0.35));
+  }
 }
 
 export function distance(state, twin, i) {

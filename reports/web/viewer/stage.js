@@ -7,6 +7,9 @@ import { PaintGl } from "./paint_gl.js";
 
 const kMostPixels = 2;      // of the canvas by one of the page
 const kClick_px = 5;        // a pointer that moved less was a click
+const kTap_px = 12;         // a finger is not as steady
+const kLongPress_ms = 450;  // a finger that rests so long on a ball is a click of the right button
+const kRight = 2;
 
 export class Stage {
   /** @param asked  changed(): draw anew; clicked({ball, button, shift}); */
@@ -45,13 +48,24 @@ export class Stage {
     const { canvas } = this;
     let last = null;
     let moved = 0;
+    let most = kClick_px;
+    let holding = null;
     const touches = new Map();
+    const held = ({ clientX, clientY, shiftKey }) => {
+      if (touches.size !== 1 || moved > most) return;
+      moved = Infinity; // lifting the finger is no click any more
+      const found = this.ballAt(clientX, clientY);
+      if (found) this.clicked({ ...found, button: kRight, shift: shiftKey });
+    };
     canvas.addEventListener("contextmenu", (event) => { if (this.takesClicks) event.preventDefault(); });
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       touches.set(event.pointerId, [event.clientX, event.clientY]);
       last = [event.clientX, event.clientY];
-      moved = 0;
+      moved = touches.size > 1 ? Infinity : 0;
+      most = event.pointerType === "touch" ? kTap_px : kClick_px;
+      clearTimeout(holding);
+      if (event.pointerType === "touch" && this.takesClicks) holding = setTimeout(() => held(event), kLongPress_ms);
     });
     canvas.addEventListener("pointermove", (event) => {
       if (!touches.has(event.pointerId)) return;
@@ -63,13 +77,14 @@ export class Stage {
       } else {
         const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]];
         moved += Math.hypot(dx, dy);
-        if (moved > kClick_px) this.drag(dx, dy, event.shiftKey || event.buttons === 4);
+        if (moved > most) this.drag(dx, dy, event.shiftKey || event.buttons === 4);
       }
       last = [event.clientX, event.clientY];
       this.changed();
     });
     const up = (event) => {
-      if (!touches.delete(event.pointerId) || event.type !== "pointerup" || moved > kClick_px) return;
+      clearTimeout(holding);
+      if (!touches.delete(event.pointerId) || event.type !== "pointerup" || moved > most) return;
       const found = this.ballAt(event.clientX, event.clientY);
       if (found) this.clicked({ ...found, button: event.button, shift: event.shiftKey });
     };

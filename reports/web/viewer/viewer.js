@@ -235,10 +235,17 @@ export class Viewer {
     this.bodies = bodiesAt(this.playback, time);
     const shots = this.shots();
     const pictures = shots.map((shot) => ({ picture: pictureOf(shot), state: shot.state, radii: shot.bodies.radii,
-      offset: this.offset(shot), run: shot.motion.about.label,
-      name: shot.ghost && shot.twin ? language.words.ghost(...this.labels) : shot.motion.about.label }));
-    this.tree = shots[0].tree;
+      offset: this.offset(shot), run: shot.motion.about.label, name: this.nameOf(shot) }));
     this.stage.paint(pictures, this.theme);
+  }
+
+  /** What stands over a picture: whose it is, and that it stands still where its run is not known any more. */
+  nameOf({ motion, ghost, twin }) {
+    const { words } = language;
+    const labels = this.motions.map(({ about }) => words.label(about.label));
+    if (ghost && twin) return words.ghost(...labels);
+    const name = words.label(motion.about.label);
+    return this.clock.time > motion.end * (1 + 1e-9) ? words.pastEnd(name, language.number(motion.end)) : name;
   }
 
   shots() {
@@ -289,6 +296,14 @@ export class Viewer {
     const motion = this.motions[0];
     return { ...countAcross(barrier, motion, this.states[0]), all: motion.balls,
       ...expectedAcross(barrier, motion, this.playback.balls.mass) };
+  }
+
+  /** How many pairs Carom's broad phases look at in the frame that is shown; nothing where balls cannot meet. */
+  tests() {
+    const [{ tests }] = this.motions;
+    if (!tests) return null;
+    const { frame } = this.states[0];
+    return { bruteForce: tests.bruteForce[frame], tree: tests.tree[frame] };
   }
 
   slab() {
