@@ -95,6 +95,22 @@ test("Energy_ThatAnEventBrings_IsNeitherLostNorGained", async () => {
   assert.ok(Math.abs(energiesAt(motion, 10).added - events) < 1e-12, `${energiesAt(motion, 10).added} for ${events}`);
 });
 
+test("Pace_DrawsFewerPixels_OnlyWhilePicturesAreSlow", async () => {
+  const { Pace } = await viewer("pace.js");
+  const pace = new Pace();
+  const after = (pictures, ms) => {
+    for (let k = 0; k < pictures; k += 1) pace.took(ms);
+    return pace.quality;
+  };
+  assert.equal(after(4, 200), 1);
+  assert.equal(after(1, 16), 1);
+  assert.ok(after(5, 200) < 1);
+  const least = after(100, 200);
+  assert.ok(least > 0.3 && least < 0.5);
+  assert.equal(after(1000, 35), least); // neither slow nor fast: it stays
+  assert.equal(after(1000, 16), 1);
+});
+
 test("Transmission_IsThatOfTheBooks", async () => {
   const { transmission } = await viewer("barrier.js");
   const unit = { mass: 1, height: 1, thickness: 1, hbar: 1 };

@@ -22,6 +22,7 @@ export class Stage {
     this.names = make("div", { className: "cv-names" });
     this.element = make("div", { className: "cv-stage" }, this.names, this.message);
     this.panes = [];
+    this.quality = 1; // pixels along an edge, by those of the screen
     this.take(plain ? null : PaintGl);
     this.watch = new ResizeObserver(() => changed());
     this.watch.observe(this.element);
@@ -119,7 +120,7 @@ export class Stage {
 
   /** Makes the canvas as large as it is seen. @returns its scale */
   fit() {
-    const scale = Math.min(devicePixelRatio || 1, kMostPixels);
+    const scale = Math.min(devicePixelRatio || 1, kMostPixels) * this.quality;
     const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight].map((x) => Math.max(Math.round(x * scale), 1));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     return scale;

@@ -13,6 +13,7 @@ import { isDark, make, save } from "./dom.js";
 import { csvOf } from "./export.js";
 import { Motion } from "./motion.js";
 import { Panels } from "./panels.js";
+import { Pace } from "./pace.js";
 import { extent } from "./picture.js";
 import { Playback } from "./playback.js";
 import { bodiesAt, colourOf, distance, pictureOf, scalesOf } from "./scenery.js";
@@ -46,6 +47,7 @@ export class Viewer {
     this.options = options;
     this.clock = new Clock(playback.scene.duration);
     this.clock.speed = options.speed ?? 1;
+    this.pace = new Pace();
     this.toggles = { impulse: false, velocity: false, spin: playback.scene.spin ? "physical" : "off", momentum: false,
       trails: false, centre: false, frame: false, tree: false, ...options.toggles };
     this.layout = options.layout ?? "one";
@@ -191,6 +193,7 @@ export class Viewer {
   }
 
   savePng() {
+    this.stage.quality = 1;
     this.paint();
     this.stage.canvas.toBlob((blob) => save(`${this.fileName}.png`, blob), "image/png");
   }
@@ -216,7 +219,9 @@ export class Viewer {
     const before = this.clock.time;
     const seconds = this.last ? Math.min((now - this.last) / 1000, 0.25) : 0;
     this.last = now;
+    if (seconds > 0) this.pace.took(1000 * seconds);
     const moved = this.clock.tick(seconds);
+    this.stage.quality = this.clock.playing ? this.pace.quality : 1;
     this.paint();
     if (moved) this.announce(this.impactsBetween(before, this.clock.time), false);
     if (now >= (this.panelsDue ?? 0) || !this.clock.playing) {
