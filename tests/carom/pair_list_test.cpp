@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kSeeds = kPart == 1 ? 2 : 1;
 /// Long enough for dozens of lists, and so for balls that are sorted again and again.
-constexpr std::int64_t kSteps = 160;
+constexpr std::int64_t kSteps = kPart == 1 ? 160 : 80;
 constexpr double kStep_s = 0.02;
 
 /// A gas in which a ball flies about a fiftieth of its radius in a step.
