@@ -18,7 +18,7 @@ void main() {
   centre = (view * vec4(sphere.xyz, 1.0)).xyz;
   radius = max(sphere.w, 1.5 * pixel * (flatView > 0.5 ? 1.0 : length(centre)));
   q = turned; tint = colour; shape = look;
-  vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)) * 2.0 - 1.0;
+  vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
   vec3 z = flatView > 0.5 ? vec3(0.0, 0.0, -1.0) : normalize(centre);
   vec3 x = normalize(cross(z, abs(z.y) < 0.99 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
   vec3 y = cross(x, z);
@@ -96,7 +96,7 @@ void main() {
   vec2 way = pb - pa;
   vec2 normal = length(way) > 1e-6 ? normalize(vec2(-way.y, way.x)) : vec2(0.0, 1.0);
   bool end = (gl_VertexID & 1) == 1;
-  float side = (gl_VertexID & 2) == 2 ? 1.0 : -1.0;
+  float side = gl_VertexID > 1 ? 1.0 : -1.0;
   vec4 p = end ? b : a;
   half_px = 0.5 * (end ? widths.y : widths.x) + 0.7;
   across = side * half_px;
@@ -129,20 +129,13 @@ in vec4 tint;
 out vec4 paint;
 void main() { paint = vec4(tint.rgb, 1.0) * tint.a; }`;
 
-const kCorners = [0, 1, 2, 2, 1, 3]; // of the two triangles of a square
-
-/**
- * A program with one array of numbers; `parts` are the sizes of its inputs. With `squares` there is one row for each
- * square, whose four corners all have it. They are not drawn as instances: where there is no graphics card each of those
- * takes some 20 µs of the processor, however small it is.
- */
+/** A program with one array of numbers; `parts` are the sizes of its inputs. */
 class Brush {
-  constructor(gl, vertex, fragment, parts, squares) {
+  constructor(gl, vertex, fragment, parts, instanced) {
     this.gl = gl;
     this.parts = parts;
     this.stride = parts.reduce((sum, x) => sum + x, 0);
-    this.squares = squares;
-    this.indices = 0;
+    this.instanced = instanced;
     this.program = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
       const shader = gl.createShader(kind);
@@ -166,6 +159,7 @@ class Brush {
     parts.forEach((size, index) => {
       gl.enableVertexAttribArray(index);
       gl.vertexAttribPointer(index, size, gl.FLOAT, false, 4 * this.stride, 4 * at);
+      if (instanced) gl.vertexAttribDivisor(index, 1);
       at += size;
     });
   }
@@ -180,26 +174,6 @@ class Brush {
     else gl.uniform2fv(place, value);
   }
 
-  /** The rows four times over, and the corners of so many squares. */
-  spread(numbers, count) {
-    const { gl, stride } = this;
-    const four = new Float32Array(4 * numbers.length);
-    for (let row = 0, to = 0; row < numbers.length; row += stride) {
-      for (let corner = 0; corner < 4; corner += 1) {
-        for (let k = 0; k < stride; k += 1, to += 1) four[to] = numbers[row + k];
-      }
-    }
-    if (count > this.indices) {
-      this.indices = 2 * count;
-      const indices = new Uint32Array(6 * this.indices);
-      for (let k = 0; k < indices.length; k += 1) indices[k] = 4 * Math.floor(k / 6) + kCorners[k % 6];
-      this.indexBuffer ??= gl.createBuffer();
-      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indexBuffer);
-      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
-    }
-    return four;
-  }
-
   draw(numbers, uniforms) {
     const count = numbers.length / this.stride;
     if (count === 0) return;
@@ -208,8 +182,8 @@ class Brush {
     for (const [name, value] of Object.entries(uniforms)) this.set(name, value);
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, this.squares ? this.spread(numbers, count) : numbers, gl.DYNAMIC_DRAW);
-    if (this.squares) gl.drawElements(gl.TRIANGLES, 6 * count, gl.UNSIGNED_INT, 0);
+    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.DYNAMIC_DRAW);
+    if (this.instanced) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     else gl.drawArrays(gl.TRIANGLES, 0, count);
   }
 }
