@@ -33,7 +33,7 @@ SymmetryResult result(Symmetry symmetry, SymmetryVerdict verdict, double radii) 
   return {symmetry, verdict, "", radii, 0.0};
 }
 
-std::string markup_of(std::vector<SceneComparison> scenes) {
+std::string symmetry_markup_of(std::vector<SceneComparison> scenes) {
   Results results;
   results.scenes = std::move(scenes);
   pugi::xml_document document;
@@ -44,11 +44,11 @@ std::string markup_of(std::vector<SceneComparison> scenes) {
 }
 
 TEST(SymmetryChapter, IsAbsent_WhereNoSceneAsks) {
-  EXPECT_THAT(markup_of({checked_scene("a/b", {})}), Not(HasSubstr("section")));
+  EXPECT_THAT(symmetry_markup_of({checked_scene("a/b", {})}), Not(HasSubstr("section")));
 }
 
 TEST(SymmetryChapter, HasAWordAGlyphAndAValue_ForEachVerdict) {
-  const std::string text = markup_of({checked_scene(
+  const std::string text = symmetry_markup_of({checked_scene(
       "a/b", {result(Symmetry::mirror, SymmetryVerdict::to_the_bit, 0.0),
               result(Symmetry::relabel, SymmetryVerdict::to_rounding, 2e-12),
               result(Symmetry::boost, SymmetryVerdict::broken, 0.25),
@@ -63,10 +63,10 @@ TEST(SymmetryChapter, HasAWordAGlyphAndAValue_ForEachVerdict) {
 }
 
 TEST(SymmetryChapter, WorstOfAllScenes_StandsInTheTable_ThenEachByItself) {
-  const std::string text =
-      markup_of({checked_scene("a/good", {result(Symmetry::boost, SymmetryVerdict::to_the_bit, 0.0)}),
-                 checked_scene("a/bad", {result(Symmetry::boost, SymmetryVerdict::broken, 0.5)}),
-                 checked_scene("a/worse", {result(Symmetry::boost, SymmetryVerdict::broken, 0.75)})});
+  const std::string text = symmetry_markup_of(
+      {checked_scene("a/good", {result(Symmetry::boost, SymmetryVerdict::to_the_bit, 0.0)}),
+       checked_scene("a/bad", {result(Symmetry::boost, SymmetryVerdict::broken, 0.5)}),
+       checked_scene("a/worse", {result(Symmetry::boost, SymmetryVerdict::broken, 0.75)})});
   const std::string table = text.substr(0, text.find("Scene by scene"));
   EXPECT_THAT(table, AllOf(HasSubstr("0.75 radii"), HasSubstr("a/worse"), Not(HasSubstr("0.5 radii"))));
   EXPECT_THAT(text.substr(table.size()),
