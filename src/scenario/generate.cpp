@@ -268,15 +268,15 @@ void check_others(const Scenario& scene, const std::vector<Ball>& balls) {
 
 std::vector<Ball> generate(const Generator& g, Scenario& scene) {
   Random random(g.seed);
-  std::vector<Ball> balls = with_masses(g, scene, draw_radii(g, scene, random));
+  const std::vector<double> radii = draw_radii(g, scene, random);
+  std::vector<Vec3> places;
+  // Before the balls are made: of a million of them the search takes as much memory as they do.
+  if (g.kind == Generator::Kind::gas) places = place_at_random(radii, scene, random);
+  std::vector<Ball> balls = with_masses(g, scene, radii);
   switch (g.kind) {
-    case Generator::Kind::gas: {
-      std::vector<double> radii(balls.size());
-      std::transform(balls.begin(), balls.end(), radii.begin(), [](const Ball& ball) { return ball.radius; });
-      const std::vector<Vec3> positions = place_at_random(radii, scene, random);
-      for (std::size_t i = 0; i < balls.size(); ++i) balls[i].position = positions[i];
+    case Generator::Kind::gas:
+      for (std::size_t i = 0; i < balls.size(); ++i) balls[i].position = places[i];
       break;
-    }
     case Generator::Kind::line:
       place_line(g, scene, balls);
       break;

@@ -200,8 +200,12 @@ void read_balls(Reader& root, Scenario& scene, const SceneOptions& options) {
   for (Reader& reader : root.tables("balls")) {
     const Generator generator = read_generator(reader, scene, options);
     try {
-      const std::vector<Ball> made = generate(generator, scene);
-      scene.balls.insert(scene.balls.end(), made.begin(), made.end());
+      std::vector<Ball> made = generate(generator, scene);
+      if (scene.balls.empty()) {
+        scene.balls = std::move(made);  // a million balls are not held twice
+      } else {
+        scene.balls.insert(scene.balls.end(), made.begin(), made.end());
+      }
     } catch (const DoesNotFit& error) {
       reader.fail("count", fmt::format("{}, allowed: fewer or smaller balls, or a larger box", error.what()));
     }
@@ -357,9 +361,8 @@ void read_scene(Reader& root, const SceneOptions& options, Scenario& scene) {
   root.finish();
 }
 
-}  // namespace
-
-ScenarioPtr parse_scene(std::string_view toml_text, const std::string& file, const SceneOptions& options) {
+std::shared_ptr<Scenario> parse(std::string_view toml_text, const std::string& file,
+                                const SceneOptions& options) {
   auto scene = std::make_shared<Scenario>();
   scene->file = file;
   scene->sha256 = sha256_hex(toml_text);
@@ -375,9 +378,14 @@ ScenarioPtr parse_scene(std::string_view toml_text, const std::string& file, con
   return scene;
 }
 
+}  // namespace
+
+ScenarioPtr parse_scene(std::string_view toml_text, const std::string& file, const SceneOptions& options) {
+  return parse(toml_text, file, options);
+}
+
 ScenarioPtr load_scene(const std::filesystem::path& file, const SceneOptions& options) {
-  const ScenarioPtr parsed = parse_scene(read_file(file), file.string(), options);
-  auto scene = std::make_shared<Scenario>(*parsed);
+  const std::shared_ptr<Scenario> scene = parse(read_file(file), file.string(), options);
   const std::filesystem::path absolute = std::filesystem::absolute(file);
   const std::string group = absolute.parent_path().filename().string();
   // A file in the root folder has no group; an id with a leading slash would be taken for an absolute path.
