@@ -84,7 +84,7 @@ class EventPlans {
   void rebase(double shift_s) {
     for (std::uint32_t ball = 0; ball < balls(); ++ball) {
       plans_[ball].crossing.time -= shift_s;
-      if (plans_[ball].first().time < kNever) see_all(ball);
+      see_planned(ball);
     }
     enqueue_all();
   }
@@ -128,6 +128,7 @@ class EventPlans {
     const EventCrossing crossing = plans_[ball].crossing;
     cells_->cross(ball, crossing.axis, crossing.direction);
     plan_crossing(ball, crossing.time);
+    plans_[ball].crossing.is_by_wall = times_.is_by_wall(ball, cells_->lower_corner(ball), cells_->width_m());
     see_walls(ball);
     see(ball, cells_->find_ahead(ball, crossing.axis, crossing.direction, near_));
     enqueue(ball);
@@ -150,12 +151,34 @@ class EventPlans {
     if (cells_) see(ball, cells_->find_near(ball, near_));
   }
 
+  /// Computes anew what the ball has planned, after clocks have been rounded. Who did not touch it still does
+  /// not, but for those within the sieve's margin: for them the ball looks again, as it does for impacts that
+  /// it forgot, and under gravity always.
+  void see_planned(std::uint32_t ball) {
+    const auto planned = plans_[ball].impacts;
+    if (kGravity ? planned.front().time < kNever
+                 : plans_[ball].looks_again(ball) || times_.is_far_from_start(ball)) {
+      see_all(ball);
+      return;
+    }
+    plans_[ball].impacts = {};
+    for (const EventImpact& impact : planned) {
+      if (impact.time < kNever && holds(impact)) plan_impact(ball, seen(ball, impact.partner));
+    }
+  }
+
+  /// An impact of the ball as it is seen now.
+  EventImpact seen(std::uint32_t ball, std::uint32_t partner) const {
+    if (is_wall(partner)) return {times_.to_wall(ball, partner - balls()), partner};
+    return {times_.to_touch(ball, partner), partner, flight_[partner]};
+  }
+
   void see_walls(std::uint32_t ball) {
-    if (!flights_.movable(ball)) return;
+    if (!plans_[ball].crossing.is_by_wall || !flights_.movable(ball)) return;
     for (std::uint32_t wall = 0; wall < times_.walls(); ++wall) {
       if (wall == flights_.bearer(ball)) continue;
       if (!times_.might_reach(ball, wall, plans_[ball].crossing.time)) continue;
-      plan_impact(ball, {times_.to_wall(ball, wall), balls() + wall});
+      plan_impact(ball, seen(ball, balls() + wall));
     }
   }
 
@@ -168,12 +191,14 @@ class EventPlans {
     }
     for (const std::uint32_t other : others.first(left)) {
       if (!flights_.movable(ball) && !flights_.movable(other)) continue;
-      plan_impact(ball, {times_.to_touch(ball, other), other, flight_[other]});
+      const EventImpact impact = seen(ball, other);
+      // Who came through the sieve and does not touch is within its margin of touching.
+      const bool grazes = !kGravity && impact.time == kNever;
+      plan_impact(ball, grazes ? EventImpact{kNever, ball} : impact);
     }
   }
 
   void plan_impact(std::uint32_t ball, const EventImpact& impact) {
-    if (impact.time == kNever) return;
     plans_[ball].insert(ball, impact, [&](const EventImpact& a, const EventImpact& b) {
       return name(a.partner) < name(b.partner);
     });
@@ -181,7 +206,10 @@ class EventPlans {
 
   void plan_crossing(std::uint32_t ball, double time_s) {
     if (!cells_ || !cells_->holds(ball)) return;
-    plans_[ball].crossing = times_.to_crossing(ball, cells_->lower_corner(ball), cells_->width_m(), time_s);
+    EventCrossing& crossing = plans_[ball].crossing;
+    const bool is_by_wall = crossing.is_by_wall;
+    crossing = times_.to_crossing(ball, cells_->lower_corner(ball), cells_->width_m(), time_s);
+    crossing.is_by_wall = is_by_wall;
   }
 
   /// A ball's number in the scene; walls come after balls.

@@ -23,6 +23,7 @@ struct EventCrossing {
   double time = kNever;  ///< s
   std::int8_t axis = 0;
   std::int8_t direction = 0;
+  bool is_by_wall = true;  ///< false where no wall can be reached from within the cell
 };
 
 /// When things will happen to balls on their present flights, on the flights' clocks, s; kNever where they do
@@ -38,6 +39,17 @@ class EventTimes {
 
   std::uint32_t walls() const { return static_cast<std::uint32_t>(walls_.size()); }
   const EventWall<Dim>& wall(std::uint32_t index) const { return walls_[index]; }
+
+  /// False where balls that fly straight touch no wall while their centres are in the cell, or an eighth of
+  /// its width outside, so that rounding has no say.
+  bool is_by_wall(std::uint32_t ball, const Vec<Dim>& lower, double width_m) const {
+    if constexpr (kGravity) return true;
+    const Vec<Dim> centre = lower.array() + 0.5 * width_m;
+    return std::any_of(walls_.begin(), walls_.end(), [&](const EventWall<Dim>& wall) {
+      const double depth = (0.5 + 0.125) * width_m * wall.normal.template lpNorm<1>();
+      return wall.normal.dot(centre) - depth - wall.offset <= flights_.radius(ball);
+    });
+  }
 
   /// False where the ball flies straight and does not reach the wall up to `until_s`, on its flight's clock.
   /// It is asked of twice the way, so that rounding has no say.
@@ -62,9 +74,11 @@ class EventTimes {
   }
 
   /// False where the balls part, or pass by more than rounding: with d from i to j and w its rate of change,
-  /// d·w >= 0, or by Lagrange's identity
-  ///   |d × w|² = d² w² - (d·w)² > w² σ².                                                  (1)
-  /// Says nothing of those that are accelerated differently.
+  /// d·w > m |w|, or by Lagrange's identity
+  ///   |d × w|² = d² w² - (d·w)² > w² (σ + m)².                                            (1)
+  /// The margin m = kMargin σ is for what rebase() may do to d, see is_far_from_start(); what both sides of
+  /// (1) and to_touch() are computed with has its own, a few epsilons of d² w². Says nothing of those that
+  /// are accelerated differently.
   bool might_touch(std::uint32_t i, std::uint32_t j) const {
     constexpr double kRounding = 64.0 * kEpsilon;
     const double both = std::max(flights_.clock(i), flights_.clock(j));
@@ -81,11 +95,25 @@ class EventTimes {
       speed_2 += w * w;
     }
     const double sigma = flights_.radius(i) + flights_.radius(j);
-    const double beyond = (1.0 - kRounding) * distance_2 - sigma * sigma;
-    bool might = static_cast<bool>(static_cast<int>(approach < 0.0) &
+    const double sigma_2 = sigma * sigma;
+    const double parting = kMargin * kMargin * sigma_2 * speed_2;
+    const double beyond = (1.0 - kRounding) * distance_2 - (1.0 + 3.0 * kMargin) * sigma_2;
+    bool might = static_cast<bool>(static_cast<int>(approach * std::abs(approach) < parting) &
                                    static_cast<int>(beyond * speed_2 <= approach * approach));
     if constexpr (kGravity) might = might || flights_.acceleration(i) != flights_.acceleration(j);
     return might;
+  }
+
+  /// Whether the ball is so far from where places or clocks count from that rounding a clock may move it by
+  /// more than a part of the margin of might_touch(). A clock c, however often it counted anew, has been
+  /// rounded by less than ε |c|, as has the other ball's; a time of flight, not longer than |c|, is rounded
+  /// by half of ε |c| and a place by half of ε (|x| + 2 |v| |c|), once before and once after. In all a ball
+  /// of radius r is moved by less than 5 ε (|x| + |v| |c|), and here by less than kMargin r / 3.
+  bool is_far_from_start(std::uint32_t ball) const {
+    constexpr double kFarthest = kMargin / (16.0 * kEpsilon);
+    const Motion<Dim> start = flights_.start(ball);
+    const double distance = speed_bound(start.x) + speed_bound(start.v) * std::abs(flights_.clock(ball));
+    return distance > kFarthest * flights_.radius(ball);
   }
 
   /// When the balls touch; the same whichever comes first.
@@ -131,6 +159,10 @@ class EventTimes {
   }
 
  private:
+  /// Of σ: a pair that misses by more touches in no computation of its flights; only one in so many balls
+  /// that do not touch comes through.
+  static constexpr double kMargin = 0x1p-30;
+
   double gap(std::uint32_t ball, const Motion<Dim>& motion, const EventWall<Dim>& wall) const {
     return wall.normal.dot(motion.x) - wall.offset - flights_.radius(ball);
   }
