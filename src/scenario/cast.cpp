@@ -95,6 +95,7 @@ void Cast::to_frame(std::int64_t frame, const std::function<void(const BallChang
 
 bool ever(const Scenario& scene, const std::function<bool(const Ball&)>& holds) {
   if (std::any_of(scene.balls.begin(), scene.balls.end(), holds)) return true;
+  if (scene.events.empty()) return false;
   Cast cast(scene);
   while (cast.next() != nullptr) {
     for (const BallChange& change : cast.take_next()) {

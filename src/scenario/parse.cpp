@@ -270,6 +270,7 @@ void check_grown(const Reader& reader, const Scenario& scene, const Ball& before
 /// Events in the order in which they happen, each about a ball that is there then.
 void read_events(Reader& root, Scenario& scene) {
   std::vector<Reader> readers = root.tables("event");
+  if (readers.empty()) return;  // and no cast of all balls
   std::size_t numbers = scene.balls.size();
   for (Reader reader : readers)  // a copy: what a reader was asked for, it names in errors
     numbers += reader.has("add_ball") ? 1 : 0;
