@@ -124,6 +124,12 @@ void add_study(CLI::App& app, Options& options) {
   study->add_option("--repeats", options.repeats, "timed runs of each setting")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  study
+      ->add_option("--budget", options.budget_s,
+                   "the CPU time in s for each scene, beside its truth; fine steps that would go beyond it "
+                   "are left out")
+      ->capture_default_str()
+      ->check(number_from(1e-3, "a number of seconds >= 0.001"));
   add_common_options(*study, options, options.study_timeout_s,
                      "the CPU time in s beyond which a run that is foreseen to take longer is left out");
 }

@@ -35,6 +35,7 @@ struct Options {
   std::string study_file;   ///< a study that the page shows, too
   int repeats = 5;          ///< timed runs of each setting
   double study_timeout_s = 2.0;
+  double budget_s = 30.0;  ///< CPU time of a study for each scene
 
   int port = 8010;  ///< of the lab; 0: any that is free
 

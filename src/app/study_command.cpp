@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <iterator>
 
 #include "app/commands.h"
 #include "app/laws.h"
 #include "app/layout.h"
 #include "app/machine.h"
 #include "app/prepare.h"
+#include "app/stop_request.h"
 #include "app/study_progress.h"
 #include "carom/evolvers/list.h"
 #include "core/error.h"
@@ -57,32 +59,54 @@ std::vector<EngineChoice> engines_of(const Options& options, const EngineCatalog
   return engines;
 }
 
-/// A study that is kept in a file while it goes.
+/// The scenes of which there is nothing yet, not even what they are.
+void drop_what_is_not_begun(Study& study) {
+  std::erase_if(study.scenes, [](const StudyScene& scene) { return scene.id.empty(); });
+}
+
+/// A study that is kept in a file while it goes. What the file has of other scenes stays in it.
 class Kept {
  public:
-  Kept(Study& study, std::string file) : study_(study), file_(std::move(file)) {}
+  Kept(const Study& study, const Study& before, std::string file)
+      : study_(study), before_(before), file_(std::move(file)) {}
 
-  /// Not after every run of a few milliseconds: writing would take longer than running.
+  /// Not after every run of a few milliseconds: writing is not to take more than a twentieth of the time.
   void changed() {
-    const auto now = std::chrono::steady_clock::now();
-    if (file_.empty() || now - written_ < std::chrono::seconds(1)) return;
-    write();
+    if (!file_.empty() && Clock::now() >= next_) write();
   }
   void write() {
     if (file_.empty()) return;
-    write_file(file_, study_json(study_));
-    written_ = std::chrono::steady_clock::now();
+    constexpr int kTimesWriting = 20;
+    const Clock::time_point start = Clock::now();
+    Study whole = study_;
+    drop_what_is_not_begun(whole);
+    for (const StudyScene& other : before_.scenes) {
+      const bool own = std::any_of(study_.scenes.begin(), study_.scenes.end(),
+                                   [&](const StudyScene& scene) { return scene.id == other.id; });
+      if (!own) whole.scenes.push_back(other);
+    }
+    write_file(file_, study_json(whole));
+    const Clock::time_point end = Clock::now();
+    next_ = end + std::max<Clock::duration>(std::chrono::seconds(1), kTimesWriting * (end - start));
   }
 
  private:
-  Study& study_;
+  using Clock = std::chrono::steady_clock;
+
+  const Study& study_;
+  const Study& before_;
   std::string file_;
-  std::chrono::steady_clock::time_point written_;
+  Clock::time_point next_;
 };
 
 bool is_same(const Machine& a, const Machine& b) {
   return a.cpu == b.cpu && a.cores == b.cores && a.compiler == b.compiler && a.build == b.build &&
          a.flags == b.flags;
+}
+
+std::string words_of(const StudyLimits& limits) {
+  return fmt::format("--timeout {:g} --memory {:g} --repeats {} --budget {:g}", limits.timeout_s,
+                     limits.memory_mib, limits.repeats, limits.budget_s);
 }
 
 /// What there is of this study in the file; nothing where there is no file yet.
@@ -98,11 +122,10 @@ Study taken_up(const Study& study, const std::string& file) {
   }
   const StudyLimits& was = before.limits;
   const StudyLimits& is = study.limits;
-  if (was.timeout_s != is.timeout_s || was.memory_mib != is.memory_mib || was.repeats != is.repeats) {
-    throw InputError(fmt::format(
-        "{}: a study with --timeout {:g} --memory {:g} --repeats {}, found --timeout {:g} "
-        "--memory {:g} --repeats {}; allowed: the same",
-        file, was.timeout_s, was.memory_mib, was.repeats, is.timeout_s, is.memory_mib, is.repeats));
+  if (was.timeout_s != is.timeout_s || was.memory_mib != is.memory_mib || was.repeats != is.repeats ||
+      was.budget_s != is.budget_s) {
+    throw InputError(
+        fmt::format("{}: a study with {}, found {}; allowed: the same", file, words_of(was), words_of(is)));
   }
   return before;
 }
@@ -115,30 +138,53 @@ StudyScene taken_up(const Study& before, const Scenario& scene, const std::optio
   return {};
 }
 
+/// Of the growths before those of these gases.
+std::vector<StudyGrowth> taken_up(const Study& before, const std::vector<GasKind>& gases) {
+  std::vector<StudyGrowth> growths;
+  std::copy_if(before.growths.begin(), before.growths.end(), std::back_inserter(growths),
+               [&](const StudyGrowth& growth) {
+                 return std::any_of(gases.begin(), gases.end(), [&](const GasKind& gas) {
+                   return gas.dimension == growth.dimension && gas.packing == growth.packing;
+                 });
+               });
+  return growths;
+}
+
 void measure(const std::vector<ScenarioPtr>& scenes, const std::vector<EngineChoice>& engines,
-             const Options& options, const Study& before, Study& study) {
+             const Options& options, const Study& before, const StopRequest& stop, Study& study) {
   const std::vector<GasKind> gases = gas_kinds(scenes);
-  Kept kept(study, options.resume_file);
+  Kept kept(study, before, options.resume_file);
   StudyProgress progress(scenes.size() + gases.size(), options.quiet);
   StudyWatch watch;
   watch.more = [&](std::size_t runs) { progress.more(runs); };
   watch.done = [&](const std::string& what) { progress.done(what); };
   watch.changed = [&] { kept.changed(); };
-  study.growths = before.growths;
+  watch.stopped = [&] { return stop.made(); };
+  study.growths = taken_up(before, gases);
   for (const ScenarioPtr& scene : scenes) {
     study.scenes.push_back(taken_up(before, *scene, options.seed));
     study.scenes.back().seed = options.seed;
   }
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    progress.begin_part();
+  for (std::size_t i = 0; i < scenes.size() && !stop.made(); ++i) {
+    progress.begin_part(scenes[i]->id);
     measure_scene(scenes[i], engines, truth_sources(), study.limits, options.parallel, watch,
                   study.scenes[i]);
   }
   for (const GasKind& gas : gases) {
-    progress.begin_part();
+    if (stop.made()) break;
+    progress.begin_part(fmt::format("more balls in dimension {}", gas.dimension));
     measure_growth(gas, engines, study.limits, watch, study.growths);
   }
+  if (!stop.made()) progress.end_part();
   kept.write();
+  drop_what_is_not_begun(study);
+}
+
+/// For who has stopped it.
+std::string how_to_go_on(const Options& options) {
+  if (!options.resume_file.empty()) return "The same command goes on.";
+  if (!options.json_file.empty()) return fmt::format("With --resume {} it goes on.", options.json_file);
+  return "With --resume FILE it could go on.";
 }
 
 }  // namespace
@@ -151,9 +197,10 @@ ExitCode study_command(const Options& options) {
   study.version = CAROM_VERSION;
   study.machine = this_machine();
   study.own = kOwn;
-  study.limits = {options.study_timeout_s, options.memory_mib, options.repeats};
+  study.limits = {options.study_timeout_s, options.memory_mib, options.repeats, options.budget_s};
   const Study before = taken_up(study, options.resume_file);
-  measure(scenes, engines, options, before, study);
+  const StopRequest stop;
+  measure(scenes, engines, options, before, stop, study);
 
   if (!options.quiet) fmt::print("{}", study_table(study));
   if (!options.json_file.empty()) write_file(options.json_file, study_json(study));
@@ -163,6 +210,8 @@ ExitCode study_command(const Options& options) {
     if (!options.quiet) fmt::print("The page is {}\n", page.string());
   }
   if (!options.csv_file.empty()) write_file(options.csv_file, study_csv(study));
+  if (stop.made()) fmt::print(stderr, "carom: stopped; this is what there is. {}\n", how_to_go_on(options));
+  stop.obey();
   return ExitCode::holds;
 }
 

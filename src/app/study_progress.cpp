@@ -26,6 +26,7 @@ std::string about(double seconds) {
 StudyProgress::StudyProgress(std::size_t parts, bool quiet)
     : parts_(parts),
       shown_(!quiet && isatty(STDERR_FILENO) == 1),
+      logged_(!quiet && !shown_),
       start_(Clock::now()),
       part_start_(start_),
       stage_start_(start_),
@@ -35,11 +36,21 @@ StudyProgress::~StudyProgress() {
   if (shown_) fmt::print(stderr, "\r\x1b[K");
 }
 
-void StudyProgress::begin_part() {
+void StudyProgress::begin_part(const std::string& name) {
+  if (part_ > 0) end_part();
   ++part_;
+  name_ = name;
   part_start_ = Clock::now();
   runs_ = 0;
   runs_done_ = 0;
+}
+
+void StudyProgress::end_part() {
+  if (!logged_) return;
+  const Clock::time_point now = Clock::now();
+  runs_done_ = runs_;
+  fmt::print(stderr, "[{}/{}] {}: {:.0f} s, {} left\n", part_, parts_, name_,
+             Seconds(now - part_start_).count(), about(seconds_left(now)));
 }
 
 void StudyProgress::more(std::size_t runs) {

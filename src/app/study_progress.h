@@ -6,8 +6,8 @@
 
 namespace carom {
 
-/// One line on stderr that says how far a study is and about how long it will still take; only on a terminal,
-/// and gone when it is done.
+/// Says on stderr how far a study is and about how long it will still take: on a terminal in one line, which
+/// is gone when it is done; elsewhere in a line for each scene, for who looks into the log of a long one.
 class StudyProgress {
  public:
   /// @param parts  scenes and gases, that are taken to last equally long until they are known
@@ -16,7 +16,10 @@ class StudyProgress {
   StudyProgress& operator=(const StudyProgress&) = delete;
   ~StudyProgress();
 
-  void begin_part();
+  /// @param name  of the scene or gas; the part before has ended
+  void begin_part(const std::string& name);
+  /// The last one is done.
+  void end_part();
   /// So many more runs are to be done in this part.
   void more(std::size_t runs);
   /// One of them is done.
@@ -28,7 +31,9 @@ class StudyProgress {
   double seconds_left(Clock::time_point now) const;
 
   std::size_t parts_;
-  bool shown_;
+  bool shown_;   // in one line
+  bool logged_;  // in many
+  std::string name_;
   std::size_t part_ = 0;  // that is under way, from 1
   std::size_t runs_ = 0;  // of this stage
   std::size_t runs_done_ = 0;

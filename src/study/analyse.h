@@ -63,6 +63,8 @@ std::optional<Mark> best_within(const std::vector<Mark>& marks, double cpu_s);
 
 /// The tolerances that a study names the cheapest setting for: m, or relative where energy is measured.
 inline constexpr std::array kTolerances = {1e-2, 1e-4, 1e-6, 1e-8};
+/// Decimal digits from one of them to the next.
+inline constexpr double kDigitsApart = 2.0;
 
 /// One engine with one setting over all steps: a line of the diagram.
 struct Series {

@@ -10,6 +10,7 @@
 
 #include "comparison/statistics/gas.h"
 #include "scenario/parse.h"
+#include "study/budget.h"
 #include "study/timing.h"
 
 namespace carom {
@@ -20,7 +21,6 @@ constexpr std::int64_t kGrowthSteps = 20;
 constexpr double kGrowthStep_s = 0.1;
 /// Ten times the balls are taken to be ten times the work and a bit: a logarithm of cells and queues.
 constexpr double kForeseenPower = 1.1;
-constexpr int kGrowthRepeats = 3;
 
 /// What a process that was to time a scene says instead where the engine does not run it.
 constexpr std::string_view kUnsupported = "unsupported: ";
@@ -64,7 +64,8 @@ bool is_foreseen_too_long(const GrowthPoint* before, double limit_s, GrowthPoint
 
 StudyGrowth& growth_in(std::vector<StudyGrowth>& all, const GasKind& kind, const std::string& engine) {
   for (StudyGrowth& growth : all) {
-    if (growth.dimension == kind.dimension && growth.engine == engine) return growth;
+    const bool same = growth.dimension == kind.dimension && growth.packing == kind.packing;
+    if (same && growth.engine == engine) return growth;
   }
   StudyGrowth& growth = all.emplace_back();
   growth.dimension = kind.dimension;
@@ -117,6 +118,7 @@ void measure_growth(const GasKind& kind, const std::vector<EngineChoice>& engine
   const ProcessLimits process{ProcessLimits().wall_seconds, limits.memory_mib};
   const std::vector<std::int64_t> counts = growth_balls();
   watch.more(counts.size() * engines.size() * kGrowthRepeats);
+  const CpuBudget budget(limits.budget_s);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     ScenarioPtr scene;
     for (int round = 0; round < kGrowthRepeats; ++round) {
@@ -128,6 +130,13 @@ void measure_growth(const GasKind& kind, const std::vector<EngineChoice>& engine
         if (static_cast<int>(point.cpu_s.size()) > round) continue;
         const GrowthPoint* before = k > 0 ? &growth.points[k - 1] : nullptr;
         if (is_foreseen_too_long(before, limits.timeout_s, point)) continue;
+        if (watch.stopped()) return;
+        if (budget.left_s() <= 0.0) {
+          if (point.status) continue;  // fewer runs than the others
+          point.status = RunStatus::timeout;
+          point.reason = fmt::format("the budget of {:g} s for a kind of gas was used up", limits.budget_s);
+          continue;
+        }
         if (!scene) scene = gas_to_grow(kind.dimension, kind.packing, point.balls);
         take(run_isolated({[&] { return time_or_refuse(*scene, engine); }}, process, 1).front(), point);
         watch.changed();

@@ -9,6 +9,9 @@
 
 namespace carom {
 
+/// Timed runs of each number of balls in each engine, at most.
+inline constexpr int kGrowthRepeats = 3;
+
 /// The numbers of balls that the growth of the cost is measured at: powers of ten from 10 to 10⁵.
 std::vector<std::int64_t> growth_balls();
 
@@ -26,7 +29,8 @@ struct GasKind {
 std::vector<GasKind> gas_kinds(const std::vector<ScenarioPtr>& scenes);
 
 /// Measures the time of every engine at each number of balls, few balls first; one that is foreseen to take
-/// longer than the limit is not run. What `into` tells already is not measured again.
+/// longer than the limit is not run, nor what comes when the budget of the kind is used up. What `into` tells
+/// already is not measured again.
 void measure_growth(const GasKind& kind, const std::vector<EngineChoice>& engines, const StudyLimits& limits,
                     const StudyWatch& watch, std::vector<StudyGrowth>& into);
 

@@ -8,6 +8,8 @@
 
 #include "comparison/compare.h"
 #include "comparison/predictability.h"
+#include "study/budget.h"
+#include "study/foresee.h"
 #include "study/impact_times.h"
 #include "study/plan.h"
 #include "study/timing.h"
@@ -16,9 +18,6 @@ namespace carom {
 
 namespace {
 
-/// A run of more than this gets kLongRepeats, its start and the resolution of the clock being nothing to it.
-constexpr double kLong_s = 0.1;
-constexpr int kLongRepeats = 3;
 /// A run of so many times its limit and a while is taken to hang. Not sooner: the limit is one of CPU time,
 /// and other programs may hold a run up.
 constexpr double kHangFactor = 10.0;
@@ -41,9 +40,9 @@ class SceneStudy {
   SceneStudy(ScenarioPtr scene, const StudyLimits& limits, int parallel, const StudyWatch& watch,
              StudyScene& into)
       : scene_(std::move(scene)),
-        timeout_s_(limits.timeout_s),
+        asked_(limits),
+        budget_(limits.budget_s),
         limits_{kHangFactor * limits.timeout_s + kHangWhile_s, limits.memory_mib},
-        repeats_(limits.repeats),
         parallel_(parallel),
         watch_(watch),
         into_(into) {}
@@ -62,8 +61,10 @@ class SceneStudy {
     }
   }
 
-  /// The truth is solved with a time limit of its own, however short that of a run is.
+  /// The truth is solved with a time limit of its own, however short that of a run is, and beside the budget.
+  /// It is not asked where all errors are known.
   void solve(const std::vector<std::shared_ptr<const TruthSource>>& sources) {
+    if (unmeasured() == 0) return;
     SceneComparison solved = compare(
         scene_, record_truth(*scene_, sources, {ProcessLimits().wall_seconds, limits_.memory_mib}), {}, {});
     truth_ = std::move(solved.truth);
@@ -72,6 +73,7 @@ class SceneStudy {
     into_.uncertainty_m = truth_.uncertainty_m;
     into_.horizon_s = truth_.horizon_s;
     into_.reach_m = truth_.known() ? reach_of_truth_m() : 0.0;
+    budget_ = CpuBudget(asked_.budget_s);
   }
 
   void plan(const std::vector<EngineChoice>& engines) {
@@ -89,20 +91,22 @@ class SceneStudy {
   }
 
   void measure_errors() {
-    watch_.more(static_cast<std::size_t>(std::count_if(into_.points.begin(), into_.points.end(),
-                                                       [](const StudyPoint& p) { return !p.status; })));
-    std::size_t from = 0;
-    while (from < into_.points.size()) {
-      // Those of one step, for a finer one is foreseen by it; some at a time.
-      std::vector<std::size_t> some;
+    watch_.more(unmeasured());
+    for (std::size_t from = 0; from < into_.points.size();) {
       const std::int64_t steps = into_.points[from].steps_per_frame;
-      for (; from < into_.points.size() && some.size() < kAtOnce; ++from) {
-        if (into_.points[from].steps_per_frame != steps) break;
-        if (into_.points[from].status) continue;
-        if (is_foreseen_too_long(from)) continue;
-        some.push_back(from);
+      std::size_t to = from;
+      while (to < into_.points.size() && into_.points[to].steps_per_frame == steps) ++to;
+      // Those of one step, for a finer one is foreseen by it; and what is tuned by the engine as it comes.
+      for (const bool tuned : {false, true}) {
+        std::vector<std::size_t> which;
+        for (std::size_t i = from; i < to; ++i) {
+          const StudyPoint& point = into_.points[i];
+          if (!point.status && point.setting.empty() != tuned) which.push_back(i);
+        }
+        if (watch_.stopped()) return;
+        run_level(admitted(which), with_steps(*scene_, steps));
       }
-      if (!some.empty()) run_some(some, with_steps(*scene_, steps));
+      from = to;
     }
   }
 
@@ -110,12 +114,17 @@ class SceneStudy {
     std::size_t runs = 0;
     for (const StudyPoint& point : into_.points) runs += static_cast<std::size_t>(missing_times(point));
     watch_.more(runs);
-    for (int round = 0; round < repeats_; ++round) {
+    for (int round = 0; round < asked_.repeats; ++round) {
       for (std::size_t i = 0; i < into_.points.size(); ++i) {
         StudyPoint& point = into_.points[i];
         const int done = static_cast<int>(point.cpu_s.size());
         if (done > round || missing_times(point) == 0) continue;
-        time_once(point, choices_[i]);
+        if (watch_.stopped()) return;
+        if (round > 0 && budget_.left_s() <= 0.0) {
+          point.untimed = fmt::format("the scene's budget of {:g} s was used up", asked_.budget_s);
+        } else {
+          time_once(point, choices_[i]);
+        }
       }
     }
   }
@@ -134,32 +143,69 @@ class SceneStudy {
     return reach_m;
   }
 
-  /// Of the same engine and setting at the last coarser step that was run.
-  const StudyPoint* coarser(std::size_t index) const {
-    const StudyPoint& point = into_.points[index];
-    const StudyPoint* found = nullptr;
-    for (std::size_t i = 0; i < index; ++i) {
-      const StudyPoint& other = into_.points[i];
-      if (other.engine == point.engine && other.setting == point.setting) found = &other;
-    }
-    return found;
+  std::size_t unmeasured() const {
+    return static_cast<std::size_t>(std::count_if(into_.points.begin(), into_.points.end(),
+                                                  [](const StudyPoint& point) { return !point.status; }));
   }
 
-  bool is_foreseen_too_long(std::size_t index) {
-    const StudyPoint* before = coarser(index);
-    if (before == nullptr || !before->status) return false;
+  void leave_out(std::size_t index, std::string reason) {
     StudyPoint& point = into_.points[index];
-    const double finer =
-        static_cast<double>(point.steps_per_frame) / static_cast<double>(before->steps_per_frame);
-    const bool was_stopped = *before->status == RunStatus::timeout;
-    const double foreseen_s = before->recorded_cpu_s * finer;
-    if (!was_stopped && foreseen_s <= timeout_s_) return false;
     point.status = RunStatus::timeout;
-    point.reason = was_stopped
-                       ? "a coarser step hung already"
-                       : fmt::format("foreseen to take {:.2g} s, longer than {:g} s", foreseen_s, timeout_s_);
+    point.reason = std::move(reason);
     watch_.done(point.engine);
-    return true;
+  }
+
+  /// Of these runs those that are to be made; the others are left out.
+  std::vector<std::size_t> admitted(const std::vector<std::size_t>& which) {
+    struct Candidate {
+      double run_s = 0.0;
+      std::size_t index = 0;
+    };
+    std::vector<Candidate> candidates;
+    for (const std::size_t i : which) {
+      const Foresight foresight = foresee(into_.points, i);
+      const std::string reason = too_long(foresight, asked_.timeout_s);
+      if (reason.empty()) {
+        candidates.push_back({foresight.cpu_s.value_or(0.0), i});
+      } else {
+        leave_out(i, reason);
+      }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.run_s < b.run_s; });
+    double left_s = budget_.left_s();
+    for (const StudyPoint& point : into_.points) {
+      left_s -= timing_cost_s(point.recorded_cpu_s, missing_times(point));
+    }
+    std::vector<std::size_t> result;
+    for (const Candidate& each : candidates) {
+      left_s -= each.run_s + timing_cost_s(each.run_s, repeats_for(each.run_s, asked_.repeats));
+      if (left_s >= 0.0) {
+        result.push_back(each.index);
+      } else {
+        leave_out(each.index, beyond_budget());
+      }
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+  }
+
+  std::string beyond_budget() const {
+    return fmt::format("too little was left of the scene's budget of {:g} s", asked_.budget_s);
+  }
+
+  /// Some at a time; what was not foreseen may use the budget up.
+  void run_level(const std::vector<std::size_t>& which, const Scenario& scene) {
+    for (std::size_t from = 0; from < which.size(); from += kAtOnce) {
+      if (watch_.stopped()) return;
+      const auto first = which.begin() + static_cast<std::ptrdiff_t>(from);
+      const auto last = which.begin() + static_cast<std::ptrdiff_t>(std::min(from + kAtOnce, which.size()));
+      if (budget_.left_s() > 0.0) {
+        run_some({first, last}, scene);
+      } else {
+        std::for_each(first, last, [&](std::size_t i) { leave_out(i, beyond_budget()); });
+      }
+    }
   }
 
   void run_some(const std::vector<std::size_t>& which, const Scenario& scene) {
@@ -181,6 +227,9 @@ class SceneStudy {
     point.steps = run.steps;
     point.recorded_cpu_s = run.cpu_seconds;
     if (run.status != RunStatus::ok) return;
+    if (run.cpu_seconds > asked_.timeout_s) {
+      point.untimed = fmt::format("took {:.2g} s, longer than {:g} s", run.cpu_seconds, asked_.timeout_s);
+    }
     point.impacts = run.trajectory.tally(run.trajectory.frames() - 1).impacts;
     if (truth_.known()) {
       point.errors.impact_time_s = impact_time_error_s(*scene_, truth_, run);
@@ -215,7 +264,7 @@ class SceneStudy {
   /// Timed runs that are still to be done.
   int missing_times(const StudyPoint& point) const {
     if (point.status != RunStatus::ok || !point.untimed.empty()) return 0;
-    const int asked = repeats_for(point.recorded_cpu_s, repeats_);
+    const int asked = repeats_for(point.recorded_cpu_s, asked_.repeats);
     return std::max(asked - static_cast<int>(point.cpu_s.size()), 0);
   }
 
@@ -232,9 +281,9 @@ class SceneStudy {
   }
 
   ScenarioPtr scene_;
-  double timeout_s_;
+  StudyLimits asked_;
+  CpuBudget budget_;
   ProcessLimits limits_;
-  int repeats_;
   int parallel_;
   const StudyWatch& watch_;
   StudyScene& into_;
@@ -244,19 +293,15 @@ class SceneStudy {
 
 }  // namespace
 
-int repeats_for(double cpu_s, int asked) {
-  return cpu_s > kLong_s ? std::min(asked, kLongRepeats) : asked;
-}
-
 void measure_scene(const ScenarioPtr& scene, const std::vector<EngineChoice>& engines,
                    const std::vector<std::shared_ptr<const TruthSource>>& sources, const StudyLimits& limits,
                    int parallel, const StudyWatch& watch, StudyScene& into) {
   SceneStudy study(scene, limits, parallel, watch, into);
   study.describe();
-  study.solve(sources);
   study.plan(engines);
+  study.solve(sources);
   study.measure_errors();
-  study.measure_times();
+  if (!watch.stopped()) study.measure_times();
 }
 
 }  // namespace carom

@@ -14,10 +14,11 @@ namespace carom {
 // What a study of accuracy against time finds out: data only, filled by measure.h and growth.h, read and
 // written as JSON by study_json.h, judged by analyse.h.
 
-/// By how much a run is off, up to the truth's horizon; nothing where it cannot be told.
+/// By how much a run is off; nothing where it cannot be told. Places and impacts up to the truth's horizon;
+/// what is conserved over the whole duration, for beyond the horizon the laws still tell it.
 struct StudyErrors {
   std::optional<double> position_m;        ///< the largest of any ball in any frame
-  std::optional<double> final_position_m;  ///< the largest of any ball in the last frame
+  std::optional<double> final_position_m;  ///< the largest of any ball in the last frame before the horizon
   std::optional<double> energy;            ///< relative, as the metrics of that name
   std::optional<double> momentum;
   std::optional<double> angular_momentum;
@@ -94,7 +95,8 @@ struct StudyGrowth {
 struct StudyLimits {
   double timeout_s = 2.0;  ///< CPU time of one run; one that is foreseen to take longer is not started
   double memory_mib = 4096.0;
-  int repeats = 5;  ///< timed runs of each setting
+  int repeats = 5;         ///< timed runs of each setting
+  double budget_s = 30.0;  ///< CPU time of one scene, beside that of its truth, and of one kind of gas
 };
 
 struct Study {

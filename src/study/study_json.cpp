@@ -16,7 +16,7 @@ namespace {
 // Keys in the order in which people read them.
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "carom study 1";
+constexpr const char* kFormat = "carom study 2";
 constexpr std::array kStatuses = {RunStatus::ok, RunStatus::unsupported, RunStatus::crashed,
                                   RunStatus::timeout, RunStatus::invalid};
 
@@ -187,7 +187,7 @@ Study study_from(const Json& json) {
                    machine.at("flags")};
   study.own = json.at("under_test");
   const Json& limits = json.at("limits");
-  study.limits = {limits.at("timeout"), limits.at("memory"), limits.at("repeats")};
+  study.limits = {limits.at("timeout"), limits.at("memory"), limits.at("repeats"), limits.at("budget")};
   for (const Json& scene : json.at("scenes")) study.scenes.push_back(scene_from(scene));
   for (const Json& growth : json.at("growths")) study.growths.push_back(growth_from(growth));
   return study;
@@ -209,7 +209,8 @@ std::string study_json(const Study& study) {
                {"limits",
                 {{"timeout", study.limits.timeout_s},
                  {"memory", study.limits.memory_mib},
-                 {"repeats", study.limits.repeats}}},
+                 {"repeats", study.limits.repeats},
+                 {"budget", study.limits.budget_s}}},
                {"scenes", Json::array()},
                {"growths", Json::array()}};
   for (const StudyScene& scene : study.scenes) json["scenes"].push_back(json_of(scene));

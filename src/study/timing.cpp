@@ -10,11 +10,7 @@ namespace carom {
 
 namespace {
 
-/// Runs are repeated until they have taken this long: a thousand times what it takes to read the clock.
-constexpr double kLeast_s = 2e-3;
 constexpr int kMostRuns = 1000;
-/// Warming up ends after a run, or after this time.
-constexpr double kWarm_s = 5e-3;
 
 /// Some frames at a time are enough to look at the clock between them.
 void warm_up(const Scenario& scene, const EngineChoice& choice) {

@@ -6,6 +6,13 @@
 
 namespace carom {
 
+/// A timed run is repeated until it has taken this long: a thousand times what it takes to read the clock.
+inline constexpr double kLeast_s = 2e-3;
+/// Warming up ends after a run, or after this time.
+inline constexpr double kWarm_s = 5e-3;
+/// What a process of its own takes to begin and to end, about.
+inline constexpr double kStart_s = 2e-3;
+
 /// What one timed run came to.
 struct Timing {
   double cpu_s = 0.0;        ///< of the stepping alone, of one run over the duration

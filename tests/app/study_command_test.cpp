@@ -1,9 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "study/study_json.h"
+#include "tests/support/folder.h"
+#include "tests/support/two_balls.h"
 
 namespace carom::test {
 namespace {
@@ -20,29 +23,9 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-constexpr const char* kPair = R"(title = "Two balls"
-dimension = 2
-duration = 1.0
-step = 0.1
-frames = 4
-[[ball]]
-mass = 1
-radius = 0.1
-position = [0, 0]
-velocity = [1, 0]
-[[ball]]
-mass = 1
-radius = 0.1
-position = [0.5, 0.05]
-)";
-
 class StudyCommand : public ::testing::Test {
  protected:
-  StudyCommand() : folder_(fs::temp_directory_path() / ("carom-study-" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "pair.toml") << kPair;
-  }
-  ~StudyCommand() override { fs::remove_all(folder_); }
+  StudyCommand() { write_file(file("pair.toml"), kTwoBalls); }
 
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -80,7 +63,7 @@ class StudyCommand : public ::testing::Test {
   }
 
  private:
-  fs::path folder_;
+  TestFolder folder_;
 };
 
 TEST_F(StudyCommand, WritesJsonAndCsv_OfEveryPoint) {
@@ -135,15 +118,61 @@ TEST_F(StudyCommand, StudiesALaw_BesideTheOthers) {
                                      ::testing::Field(&StudyEngine::label, "carom:law@right")));
 }
 
+TEST_F(StudyCommand, KeepsWhatItHasOfOtherScenes_WhenResumed) {
+  study({"--repeats", "1", "--resume", file("kept.json")});
+  Study other = parse_study(read_file(file("kept.json")), "kept.json");
+  other.scenes[0].id = "impact/other";
+  write_file(file("kept.json"), study_json(other));
+  study({"--repeats", "1", "--resume", file("kept.json"), "--json", file("study.json")});
+  const Study kept = parse_study(read_file(file("kept.json")), "kept.json");
+  ASSERT_EQ(kept.scenes.size(), 2U);
+  EXPECT_EQ(kept.scenes[1].id, "impact/other");
+  EXPECT_EQ(kept.scenes[1].points[0].cpu_s, other.scenes[0].points[0].cpu_s);
+  EXPECT_EQ(parse_study(read_file(file("study.json")), "study.json").scenes.size(), 1U);
+}
+
+/// The program on the scene, with far more to do than there is time, until this signal; its wait status.
+int study_until(int signal, const std::string& scene, const std::string& kept, const std::string& json) {
+  const pid_t program = fork();
+  if (program == 0) {
+    execl(CAROM_PROGRAM, CAROM_PROGRAM, "study", scene.c_str(), "--quiet", "--engine", "carom:step",
+          "--repeats", "1000", "--budget", "1000", "--resume", kept.c_str(), "--json", json.c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  // It is kept first when something is known.
+  while (!fs::exists(kept) && waitpid(program, &status, WNOHANG) == 0) usleep(1000);
+  kill(program, signal);
+  waitpid(program, &status, 0);
+  return status;
+}
+
+TEST_F(StudyCommand, LeavesWholeResults_WhenItIsStopped) {
+  for (const int signal : {SIGINT, SIGTERM, SIGKILL}) {
+    const std::string kept = file(std::to_string(signal) + "-kept.json");
+    const std::string json = file(std::to_string(signal) + "-study.json");
+    const int status = study_until(signal, file("pair.toml"), kept, json);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(WTERMSIG(status), signal);
+    const Study study = parse_study(read_file(kept), kept);
+    ASSERT_EQ(study.scenes.size(), 1U);
+    EXPECT_EQ(study.scenes[0].points.size(), 9U);
+    EXPECT_EQ(study.scenes[0].points[0].status, RunStatus::ok);
+    // One that is asked to stop writes what else was asked for; one that is killed cannot.
+    EXPECT_EQ(fs::exists(json), signal != SIGKILL);
+    if (fs::exists(json)) EXPECT_EQ(study_json(parse_study(read_file(json), json)), read_file(kept));
+  }
+}
+
 TEST_F(StudyCommand, NamesWhatThereIsNot) {
   EXPECT_THAT(error_of({"--engine", "carom:warp"}), HasSubstr("carom:warp"));
   EXPECT_THROW(study_command(parsed({file("none.toml"), "--quiet"}).options), InputError);
 }
 
 TEST_F(StudyCommand, EndsWithTwo_OnBadUsage) {
-  for (const Words& words :
-       {Words{}, Words{"all", "--repeats", "0"}, Words{"all", "--timeout", "0"}, Words{"all", "--resume", ""},
-        Words{"all", "--step", "0.1"}, Words{"all", "--csv", ""}}) {
+  for (const Words& words : {Words{}, Words{"all", "--repeats", "0"}, Words{"all", "--budget", "0"},
+                             Words{"all", "--timeout", "0"}, Words{"all", "--resume", ""},
+                             Words{"all", "--step", "0.1"}, Words{"all", "--csv", ""}}) {
     EXPECT_EQ(parsed(words).exit_code, 2);
   }
 }

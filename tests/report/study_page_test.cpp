@@ -53,6 +53,15 @@ TEST(StudyChapter, SaysWhereAPeerIsAhead_AndWhereNoneIs) {
               AllOf(HasSubstr("at or below every peer's in 1 of 1 scene"), Not(HasSubstr("needs"))));
 }
 
+TEST(StudyChapter, PricesADigitOfTheCheapest_FromOneToleranceToTheNext) {
+  Study study = some_study();
+  study.scenes[0].points[0].cpu_s = {9e-6};
+  // From 1 µs for 0.01 to 9 µs for 0.0001: two digits for nine times the time; its quartiles agree.
+  EXPECT_THAT(chapter_of(study),
+              HasSubstr("<td>carom:event</td><td class=\"number\">9.0 µs (9.0 µs – 9.0 µs)</td>"
+                        "<td class=\"number\">1e-15</td><td class=\"number\">3</td>"));
+}
+
 TEST(StudyChapter, SaysHowItWasMeasured_AndHowToReadIt) {
   EXPECT_THAT(chapter_of(some_study()), AllOf(HasSubstr("a compiler, build Release (-O3)"),
                                               HasSubstr("a CPU"), HasSubstr("Read <em>this</em>")));

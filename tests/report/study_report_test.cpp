@@ -42,16 +42,18 @@ std::vector<std::vector<std::string>> read_csv(const std::string& text) {
 }
 
 TEST(StudyCsv, ReadsBack_ToWhatWasMeasured) {
-  const Study study = some_study();
+  Study study = some_study();
+  study.growths.push_back(
+      {2, 0.2, "peer", {{100, RunStatus::ok, "", 20, 5, {2e-4}}, {1000, {}, "", 20, 0, {}}}});
   const auto rows = read_csv(study_csv(study));
   const auto column = [&](const std::string& name) {
     return static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin());
   };
   const std::vector<StudyPoint>& points = study.scenes[0].points;
-  ASSERT_EQ(rows.size(), points.size() + 1);
+  ASSERT_EQ(rows.size(), points.size() + 3);
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::vector<std::string>& row = rows[i + 1];
-    ASSERT_EQ(row.size(), rows[0].size()) << i;
     EXPECT_EQ(row[column("engine")], points[i].engine);
     EXPECT_EQ(row[column("setting")], points[i].setting);
     EXPECT_EQ(row[column("reason")], points[i].reason);
@@ -60,6 +62,10 @@ TEST(StudyCsv, ReadsBack_ToWhatWasMeasured) {
     EXPECT_EQ(std::stod(row[column("position")]), *points[i].errors.position_m);
     EXPECT_EQ(std::stod(row[column("cpu_median")]), points[i].cpu_s[1]);
   }
+  const std::vector<std::string>& growth = rows[points.size() + 1];
+  EXPECT_EQ(growth[column("scene")], "gas of 100 balls in dimension 2");
+  EXPECT_EQ(growth[column("cpu_median")], "0.0002");
+  EXPECT_EQ(growth[column("ns_per_ball_and_step")], "100");
   EXPECT_EQ(rows[1][column("on_front")], "1");
   EXPECT_EQ(rows[1][column("ns_per_ball_and_step")], "") << "it has no steps";
   EXPECT_EQ(rows[3][column("on_front")], "0") << "slower than event, and worse";

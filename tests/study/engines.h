@@ -12,6 +12,7 @@
 
 #include "engine/engine.h"
 #include "engine/tuning.h"
+#include "trajectory/cpu_time.h"
 #include "trajectory/record.h"
 
 namespace carom::test {
@@ -70,6 +71,37 @@ class KnownOrder final : public Engine, public Tunable {
 
  private:
   double order_;
+};
+
+/// As long in every step as in another, kStepCost_s, and right.
+class SlowSimulation final : public Simulation {
+ public:
+  static constexpr double kStepCost_s = 5e-5;
+
+  explicit SlowSimulation(const Scenario& scene) : flight_(scene, 0.0, 0.0) {}
+
+  void advance(double step_s, std::int64_t steps) override {
+    const double until_s = cpu_now() + kStepCost_s * static_cast<double>(steps);
+    while (cpu_now() < until_s) {
+    }
+    flight_.advance(step_s, steps);
+  }
+  void snapshot(std::span<BallState> balls) const override { flight_.snapshot(balls); }
+  Tally tally() const override { return {}; }
+  Settings settings() const override { return {}; }
+
+ private:
+  KnownOrderSimulation flight_;
+};
+
+class Slow final : public Engine {
+ public:
+  EngineInfo info() const override {
+    return {"slow", "takes its time", "1", "float64", {{"faithful", "the only one"}}, {}, {}, {}};
+  }
+  std::unique_ptr<Simulation> create(const Scenario& scene, std::string_view /*profile*/) const override {
+    return std::make_unique<SlowSimulation>(scene);
+  }
 };
 
 /// Ends by an exception in whatever scene.

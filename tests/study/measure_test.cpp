@@ -8,12 +8,15 @@
 #include "reference/closed_form/closed_form.h"
 #include "scenario/parse.h"
 #include "study/analyse.h"
+#include "study/foresee.h"
 #include "study/study_json.h"
 #include "tests/study/engines.h"
 
 namespace carom::test {
 namespace {
 
+using ::testing::Contains;
+using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
@@ -29,11 +32,11 @@ position = [0, 0]
 velocity = [1, 2]
 )";
 
-const StudyLimits kLimits{2.0, 4096.0, 2};
+const StudyLimits kLimits{2.0, 4096.0, 2, 30.0};
 
 StudyScene measured(const std::vector<EngineChoice>& engines, StudyScene before = {},
-                    const StudyWatch& watch = {}) {
-  measure_scene(parse_scene(kFlight, "flight.toml"), engines, {make_closed_form_truth()}, kLimits, 2, watch,
+                    const StudyWatch& watch = {}, const StudyLimits& limits = kLimits) {
+  measure_scene(parse_scene(kFlight, "flight.toml"), engines, {make_closed_form_truth()}, limits, 2, watch,
                 before);
   return before;
 }
@@ -117,6 +120,52 @@ TEST(StudyMeasurement, DoesNotMeasureAgain_WhatIsKnown) {
   const StudyScene second = measured(engines, first, watch);
   EXPECT_EQ(runs, 0U);
   EXPECT_EQ(second.points.front().cpu_s, first.points.front().cpu_s);
+}
+
+TEST(StudyMeasurement, LeavesOut_WhatIsForeseenToTakeTooLong) {
+  // The finest step takes 4000 × 50 µs.
+  const StudyScene scene = measured({choice_of<Slow>("slow")}, {}, {}, {0.05, 4096.0, 1, 30.0});
+  EXPECT_THAT(scene.points.front().cpu_s, SizeIs(1));
+  EXPECT_EQ(scene.points.back().status, RunStatus::timeout);
+  EXPECT_THAT(scene.points.back().reason, HasSubstr("longer than 0.05 s"));
+}
+
+TEST(StudyMeasurement, DoesNotTime_WhatTookTooLong) {
+  const double timeout_s = 2.0 * SlowSimulation::kStepCost_s;  // less than the four coarsest steps take
+  const StudyScene scene = measured({choice_of<Slow>("slow")}, {}, {}, {timeout_s, 4096.0, 1, 30.0});
+  EXPECT_EQ(scene.points.front().status, RunStatus::ok);
+  EXPECT_TRUE(scene.points.front().errors.position_m);
+  EXPECT_THAT(scene.points.front().cpu_s, SizeIs(0));
+  EXPECT_THAT(scene.points.front().untimed, HasSubstr("longer than 0.0001 s"));
+}
+
+TEST(StudyMeasurement, KeepsToItsBudget_AndTimesWhatWasRun) {
+  const StudyScene scene =
+      measured({choice_of<Slow>("slow"), choice_of<KnownOrder>("known", 1.0)}, {}, {}, {2.0, 4096.0, 1, 0.1});
+  EXPECT_EQ(scene.points.front().status, RunStatus::ok);
+  for (const StudyPoint& point : scene.points) {
+    if (point.status == RunStatus::ok) {
+      EXPECT_THAT(point.cpu_s, SizeIs(1));
+    } else {
+      EXPECT_EQ(point.status, RunStatus::timeout);
+    }
+  }
+  // The finest step takes 0.2 s, which are more than there is.
+  EXPECT_THAT(scene.points, Contains(Field(&StudyPoint::reason, HasSubstr("budget of 0.1 s"))));
+}
+
+TEST(StudyMeasurement, StopsBeforeTheNextRun_WhenAsked) {
+  const std::vector<EngineChoice> engines = {choice_of<KnownOrder>("known", 1.0)};
+  const std::string whole = rows_of(measured(engines));
+  for (const int changes : {0, 1, 3, 30}) {
+    int seen = 0;
+    StudyWatch watch;
+    watch.changed = [&] { ++seen; };
+    watch.stopped = [&] { return seen >= changes; };
+    const StudyScene stopped = measured(engines, {}, watch);
+    EXPECT_EQ(seen, changes);
+    EXPECT_EQ(rows_of(measured(engines, stopped)), whole) << "stopped after " << changes;
+  }
 }
 
 TEST(StudyRepeats, AreFewer_OfALongRun) {

@@ -17,7 +17,7 @@ Study some_study() {
   study.version = "0.1.0";
   study.own = "carom";
   study.machine = {"a \"CPU\"", 2, "GCC", "Release", "-O3"};
-  study.limits = {0.7, 512.0, 3};
+  study.limits = {0.7, 512.0, 3, 20.0};
   StudyScene scene;
   scene.id = "impact/head-on";
   scene.title = "Head-on, b = ½";
@@ -64,7 +64,7 @@ TEST(StudyJson, NamesTheFile_OfWhatIsNoStudy) {
   const std::string whole = study_json(some_study());
   for (const std::string& text :
        {std::string(), std::string("{}"), std::string("[1]"), whole.substr(0, whole.size() / 2),
-        std::string(R"({"format": "carom study 1"})")}) {
+        std::string(R"({"format": "carom study 2"})")}) {
     try {
       parse_study(text, "some.json");
       FAIL() << text;

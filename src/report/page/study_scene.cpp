@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "report/page/study_plot.h"
 #include "report/page/wording.h"
@@ -45,9 +46,13 @@ void add_leads(Node parent, const StudyScene& scene, const std::string& own) {
 }
 
 void add_cheapest(Node parent, const StudyScene& scene, const std::vector<carom::Mark>& marks) {
-  Node body = add_table(
-      parent, "gates", "The cheapest setting of all for an error of at most …",
-      {{unit_of(scene), "number"}, {"setting", ""}, {"CPU time (quartiles)", "number"}, {"error", "number"}});
+  Node body = add_table(parent, "gates", "The cheapest setting of all for an error of at most …",
+                        {{unit_of(scene), "number"},
+                         {"setting", ""},
+                         {"CPU time (quartiles)", "number"},
+                         {"error", "number"},
+                         {"a digit more than the line above: time ×", "number"}});
+  std::optional<carom::Mark> above;
   for (const double tolerance : kTolerances) {
     Node row = add(body, "tr");
     add(row, "th", {{"scope", "row"}}, given(tolerance));
@@ -55,6 +60,10 @@ void add_cheapest(Node parent, const StudyScene& scene, const std::vector<carom:
     add(row, "td", {}, mark ? words_of(scene, scene.points[mark->point]) : "none is as good");
     add_number(row, mark ? spread_words(mark->cpu_s) : "–");
     add_number(row, mark ? number(mark->error) : "–");
+    const bool priced = mark && above;
+    add_number(row,
+               priced ? number(std::pow(mark->cpu_s.median / above->cpu_s.median, 1.0 / kDigitsApart)) : "–");
+    above = mark;
   }
 }
 
@@ -116,11 +125,12 @@ void add_point(Node body, const StudyScene& scene, const StudyPoint& point, bool
   add(row, "th", {{"scope", "row"}}, words_of(scene, point));
   if (point.status != RunStatus::ok) {
     const std::string status = point.status ? std::string(name_of(*point.status)) : "not run yet";
-    add(row, "td", {{"colspan", "8"}, {"class", "reason"}}, status + ": " + point.reason);
+    add(row, "td", {{"colspan", "9"}, {"class", "reason"}}, status + ": " + point.reason);
     return;
   }
   const StudyErrors& errors = point.errors;
   add_number(row, point.cpu_s.empty() ? "untimed: " + point.untimed : spread_words(spread_of(point.cpu_s)));
+  add_number(row, point.cpu_s.empty() ? "–" : time_words(spread_of(point.cpu_s).least));
   for (const std::optional<double>& error :
        {errors.position_m, errors.final_position_m, errors.energy, errors.momentum, errors.angular_momentum,
         errors.impact_time_s}) {
@@ -134,6 +144,7 @@ void add_points(Node parent, const StudyScene& scene, const std::vector<carom::M
   Node body = add_table(box, "measured", "Every run, coarse steps first",
                         {{"engine, setting and step", ""},
                          {"CPU time (quartiles)", "number"},
+                         {"its least", "number"},
                          {"position, m", "number"},
                          {"final position, m", "number"},
                          {"energy", "number"},
