@@ -160,7 +160,9 @@ TEST_F(StudyCommand, LeavesWholeResults_WhenItIsStopped) {
     EXPECT_EQ(study.scenes[0].points[0].status, RunStatus::ok);
     // One that is asked to stop writes what else was asked for; one that is killed cannot.
     EXPECT_EQ(fs::exists(json), signal != SIGKILL);
-    if (fs::exists(json)) EXPECT_EQ(study_json(parse_study(read_file(json), json)), read_file(kept));
+    if (fs::exists(json)) {
+      EXPECT_EQ(study_json(parse_study(read_file(json), json)), read_file(kept));
+    }
   }
 }
 
