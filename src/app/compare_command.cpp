@@ -106,7 +106,7 @@ void write_outputs(const Options& options, const Results& results, const std::op
 }  // namespace
 
 ExitCode compare_command(const Options& options) {
-  const EngineCatalog catalog(engine_folder(), options.engines_from);
+  const EngineCatalog catalog(engine_folder(), options.engines_from, options.threads);
   const std::vector<ScenarioPtr> scenes = load_scenes(options, catalog);
   const std::optional<Baseline> baseline = read_baseline(options);
   const std::optional<Study> study = read_study(options);

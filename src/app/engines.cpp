@@ -25,8 +25,8 @@ EngineSource module_source(const std::string& name, const fs::path& file) {
   return {name, [file]() -> const Engine& { return open_engine_module(file); }};
 }
 
-EngineSource carom_source(const std::string& name) {
-  const std::shared_ptr<const Engine> engine = make_carom_engine(name);
+EngineSource carom_source(const std::string& name, std::size_t threads) {
+  const std::shared_ptr<const Engine> engine = make_carom_engine(name, threads);
   return {name, [engine]() -> const Engine& { return *engine; }};
 }
 
@@ -44,8 +44,10 @@ std::vector<fs::path> modules_in(const fs::path& folder) {
 
 }  // namespace
 
-EngineCatalog::EngineCatalog(const fs::path& modules, const std::vector<std::string>& extra) {
-  sources_.push_back(carom_source("carom"));
+EngineCatalog::EngineCatalog(const fs::path& modules, const std::vector<std::string>& extra,
+                             std::size_t threads)
+    : threads_(threads) {
+  sources_.push_back(carom_source("carom", threads_));
   for (const KnownEngine& known : kKnownEngines) {
     const std::string name(known.name);
     const fs::path file = modules / (name + ".so");
@@ -85,7 +87,8 @@ EngineSource EngineCatalog::find(const std::string& name) const {
     throw InputError(fmt::format("engine {} takes part with --law FILE, and is not named", name));
   }
   const std::vector<std::string> variants = carom_variant_names();
-  if (std::find(variants.begin(), variants.end(), name) != variants.end()) return carom_source(name);
+  if (std::find(variants.begin(), variants.end(), name) != variants.end())
+    return carom_source(name, threads_);
   for (const MissingEngine& engine : missing_) {
     if (engine.name == name) {
       throw InputError(fmt::format("engine {} is not built: {} is not installed", name, engine.package));

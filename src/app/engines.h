@@ -17,7 +17,9 @@ class EngineCatalog {
  public:
   /// @param modules  the folder with the reference engines' modules
   /// @param extra    folders with further modules; an engine is called like its file
-  EngineCatalog(const std::filesystem::path& modules, const std::vector<std::string>& extra);
+  /// @param threads  for a run of the hand-written engine
+  EngineCatalog(const std::filesystem::path& modules, const std::vector<std::string>& extra,
+                std::size_t threads = 1);
 
   const std::vector<EngineSource>& sources() const { return sources_; }
   const std::vector<MissingEngine>& missing() const { return missing_; }
@@ -31,6 +33,7 @@ class EngineCatalog {
  private:
   std::vector<EngineSource> sources_;
   std::vector<MissingEngine> missing_;
+  std::size_t threads_;
 };
 
 /// What truths come from, in the order in which they are asked.

@@ -148,7 +148,7 @@ Metric metric_to_explain(const Options& options, const RunComparison& run) {
 }  // namespace
 
 ExitCode explain_command(const Options& options) {
-  const EngineCatalog catalog(engine_folder(), options.engines_from);
+  const EngineCatalog catalog(engine_folder(), options.engines_from, options.threads);
   const ScenarioPtr scene = scene_to_explain(options, catalog);
   const auto [engine, info] = engine_to_explain(options, catalog);
 

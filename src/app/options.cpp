@@ -58,6 +58,13 @@ void add_run_options(CLI::App& command, Options& options) {
       ->check(number_from(std::numeric_limits<double>::min(), "a number > 0"));
   command.add_option("--seed", options.seed, "the seed of every generator, instead of the scene's")
       ->check(seed());
+  command
+      .add_option(
+          "--threads", options.threads,
+          "threads that a run of carom in fixed steps shares its balls among, where there are many; the "
+          "results are the same")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256));
   command.add_option("--json", options.json_file, "write the results as JSON to this file")
       ->check(not_empty());
 }

@@ -40,6 +40,7 @@ struct Options {
   int port = 8010;  ///< of the lab; 0: any that is free
 
   int parallel = 1;
+  std::size_t threads = 1;  ///< for a run of carom
   double timeout_s = 120.0;
   double memory_mib = 4096.0;
   bool quiet = false;

@@ -14,6 +14,9 @@ namespace carom {
 
 namespace {
 
+/// In fewer balls there is less to share than threads take to meet.
+constexpr std::size_t kBallsToShare = 20'000;
+
 std::map<std::string, Variant> all_variants() {
   std::map<std::string, Variant> variants = {{"carom", {}}};
   for (const int dimension : {2, 3}) {
@@ -71,7 +74,7 @@ class CaromEngine final : public Engine, public Tunable {
   }
 
   std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view /*profile*/) const override {
-    return compose(scenario, variant_);
+    return compose(scenario, variant_for(scenario));
   }
 
   bool takes_steps(const Scenario& scenario) const override {
@@ -89,10 +92,16 @@ class CaromEngine final : public Engine, public Tunable {
 
   std::unique_ptr<Simulation> create_tuned(const Scenario& scenario, std::string_view /*profile*/,
                                            const Tuned& tuned) const override {
-    return compose_tuned(scenario, variant_, tuned);
+    return compose_tuned(scenario, variant_for(scenario), tuned);
   }
 
  private:
+  Variant variant_for(const Scenario& scene) const {
+    Variant variant = variant_;
+    if (scene.balls.size() < kBallsToShare) variant.threads = 1;
+    return variant;
+  }
+
   std::string name_;
   Variant variant_;
 };
@@ -108,9 +117,11 @@ std::vector<std::string> carom_variant_names() {
   return names;
 }
 
-std::unique_ptr<Engine> make_carom_engine(const std::string& name) {
+std::unique_ptr<Engine> make_carom_engine(const std::string& name, std::size_t threads) {
   if (name == kTextbookName) return make_textbook_engine();
-  return std::make_unique<CaromEngine>(name, all_variants().at(name));
+  Variant variant = all_variants().at(name);
+  variant.threads = threads;
+  return std::make_unique<CaromEngine>(name, variant);
 }
 
 }  // namespace carom

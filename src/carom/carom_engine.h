@@ -13,7 +13,9 @@ namespace carom {
 /// the course program.
 std::vector<std::string> carom_variant_names();
 
-/// The hand-written engine. @param name  "carom", or one of carom_variant_names()
-std::unique_ptr<Engine> make_carom_engine(const std::string& name = "carom");
+/// The hand-written engine.
+/// @param name     "carom", or one of carom_variant_names()
+/// @param threads  for scenes that are large enough for more than one; the results are the same
+std::unique_ptr<Engine> make_carom_engine(const std::string& name = "carom", std::size_t threads = 1);
 
 }  // namespace carom

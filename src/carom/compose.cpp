@@ -19,7 +19,7 @@ const Evolver& choose_evolver(const Scenario& scene, const Variant& variant) {
 template <int Dim>
 Parts<Dim> make_parts(const Scenario& scene, const Variant& variant) {
   return {make_broad_phase<Dim>(scene, variant.broad_phase), make_flight<Dim>(scene),
-          make_cluster_law<Dim>(scene), variant.skin};
+          make_cluster_law<Dim>(scene), variant.skin, variant.threads};
 }
 
 template Parts<2> make_parts<2>(const Scenario&, const Variant&);

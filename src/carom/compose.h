@@ -15,6 +15,8 @@ struct Variant {
   /// Of the evolvers of fixed steps: without the skin they look for pairs anew in every step. The result is
   /// the same.
   PairSkin skin = PairSkin::kChosen;
+  /// Of the same: threads that share the work. The result is the same.
+  std::size_t threads = 1;
 };
 
 /// The parts that the scene calls for, with the variant's broad phase or the one that suits the scene.

@@ -20,7 +20,7 @@ struct Motion {
 };
 
 /// Gives every ball, for one stretch of flight, the constant acceleration that stands for the effects that
-/// the scene engages. As an evolver sees it: one call for all balls a step, and one for each ball that was
+/// the scene engages. As an evolver sees it: one call for many balls a step, and one for each ball that was
 /// hit.
 template <int Dim>
 class Flight {
@@ -30,8 +30,9 @@ class Flight {
   Flight& operator=(const Flight&) = delete;
   virtual ~Flight() = default;
 
-  /// The accelerations of all balls for the next `tau_s` seconds.
-  virtual void accelerations(const World<Dim>& world, double tau_s, VectorColumn<Dim>& a) const = 0;
+  /// The accelerations of balls for the next `tau_s` seconds, from one ball up to, but without, another.
+  virtual void accelerations(const World<Dim>& world, std::size_t begin, std::size_t end, double tau_s,
+                             VectorColumn<Dim>& a) const = 0;
 
   /// The acceleration of a ball for the next `tau_s` seconds.
   virtual Vec<Dim> acceleration(const World<Dim>& world, std::size_t ball, double tau_s) const = 0;
@@ -66,8 +67,9 @@ class FlightModel final : public Flight<Dim> {
 
   explicit FlightModel(Effects... effects) : effects_(effects...) {}
 
-  void accelerations(const World<Dim>& world, double tau_s, VectorColumn<Dim>& a) const override {
-    for (std::size_t ball = 0; ball < world.size(); ++ball) a.set(ball, acceleration(world, ball, tau_s));
+  void accelerations(const World<Dim>& world, std::size_t begin, std::size_t end, double tau_s,
+                     VectorColumn<Dim>& a) const override {
+    for (std::size_t ball = begin; ball < end; ++ball) a.set(ball, acceleration(world, ball, tau_s));
   }
 
   Vec<Dim> acceleration(const World<Dim>& world, std::size_t ball, double tau_s) const override {

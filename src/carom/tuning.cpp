@@ -75,7 +75,11 @@ std::vector<Tuning> variant_tunings(const Scenario& scene, const Variant& varian
 
 std::unique_ptr<Simulation> compose_tuned(const Scenario& scene, const Variant& variant, const Tuned& tuned) {
   const auto& value = std::get<std::string>(tuned.value);
-  if (tuned.name == kBroadPhase) return compose(scene, {variant.evolver, value});
+  if (tuned.name == kBroadPhase) {
+    Variant with_broad_phase = variant;
+    with_broad_phase.broad_phase = value;
+    return compose(scene, with_broad_phase);
+  }
   Scenario with_law = scene;
   for (const NamedLaw& each : kLaws) {
     if (value == each.name) with_law.multi_contact = each.law;

@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "carom/large_pages.h"
+#include "carom/threads.h"
 #include "core/vec.h"
 #include "engine/engine.h"
 #include "scenario/scenario.h"
@@ -85,14 +87,16 @@ class VectorColumn {
   }
 
   /// Place k takes what stood at order[k]. @param spare  for use meanwhile
-  void reorder(std::span<const std::uint32_t> order, std::vector<double>& spare) {
-    for (std::vector<double>& axis : axes_) reordered(axis, order, spare);
+  void reorder(std::span<const std::uint32_t> order, Column<double>& spare, const Threads& threads) {
+    for (Column<double>& axis : axes_) reordered(axis, order, spare, threads);
   }
 
-  static void reordered(std::vector<double>& column, std::span<const std::uint32_t> order,
-                        std::vector<double>& spare) {
+  static void reordered(Column<double>& column, std::span<const std::uint32_t> order, Column<double>& spare,
+                        const Threads& threads) {
     spare.resize(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) spare[k] = column[order[k]];
+    threads.in_parallel(order.size(), [&](std::size_t first, std::size_t end) {
+      for (std::size_t k = first; k < end; ++k) spare[k] = column[order[k]];
+    });
     column.swap(spare);
   }
 
@@ -100,17 +104,14 @@ class VectorColumn {
   std::span<const double> axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
 
  private:
-  std::array<std::vector<double>, Dim> axes_;
+  std::array<Column<double>, Dim> axes_;
 };
 
 /// The length of the longest vector; what is not a number counts for nothing.
 template <int Dim>
-double largest_norm(const VectorColumn<Dim>& vectors) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < vectors.axis(0).size(); ++i) {
-    largest = std::max(largest, vectors[i].squaredNorm());
-  }
-  return std::sqrt(largest);
+double largest_norm(const VectorColumn<Dim>& vectors, const Threads& threads = Threads()) {
+  return std::sqrt(threads.largest(vectors.axis(0).size(),
+                                   [&vectors](std::size_t i) { return vectors[i].squaredNorm(); }));
 }
 
 /// Components of a spin: along z alone in 2D.
@@ -124,14 +125,14 @@ using Spin = Vec<kSpinAxes<Dim>>;
 /// are empty in a scene without it: what is not asked for takes no byte.
 template <int Dim>
 struct World {
-  VectorColumn<Dim> position;           ///< m
-  VectorColumn<Dim> velocity;           ///< m/s
-  std::vector<double> radius;           ///< m
-  std::vector<double> inverse_mass;     ///< 1/kg, 0 for an immovable ball
-  VectorColumn<kSpinAxes<Dim>> spin;    ///< rad/s; empty without effects.spin
-  std::vector<double> inverse_inertia;  ///< 1/(kg m²), 0 for an immovable ball; empty without effects.spin
+  VectorColumn<Dim> position;         ///< m
+  VectorColumn<Dim> velocity;         ///< m/s
+  Column<double> radius;              ///< m
+  Column<double> inverse_mass;        ///< 1/kg, 0 for an immovable ball
+  VectorColumn<kSpinAxes<Dim>> spin;  ///< rad/s; empty without effects.spin
+  Column<double> inverse_inertia;     ///< 1/(kg m²), 0 for an immovable ball; empty without effects.spin
   /// The scene's number of the ball at each place, see reorder(); empty while it is the place.
-  std::vector<std::uint32_t> number;
+  Column<std::uint32_t> number;
 
   explicit World(const std::vector<Ball>& balls, bool spins = false)
       : position(balls.size()), velocity(balls.size()), spin(spins ? balls.size() : 0) {
@@ -161,17 +162,20 @@ struct World {
   bool before(std::size_t a, std::size_t b) const { return number_of(a) < number_of(b); }
 
   /// Puts the ball at place order[k] to place k: balls that lie side by side in memory are loaded together.
-  void reorder(std::span<const std::uint32_t> order) {
-    std::vector<double> spare;
-    position.reorder(order, spare);
-    velocity.reorder(order, spare);
-    for (auto* column : {&radius, &inverse_mass}) VectorColumn<Dim>::reordered(*column, order, spare);
+  void reorder(std::span<const std::uint32_t> order, const Threads& threads) {
+    Column<double> spare;
+    position.reorder(order, spare, threads);
+    velocity.reorder(order, spare, threads);
+    for (auto* column : {&radius, &inverse_mass})
+      VectorColumn<Dim>::reordered(*column, order, spare, threads);
     if (spins()) {
-      spin.reorder(order, spare);
-      VectorColumn<Dim>::reordered(inverse_inertia, order, spare);
+      spin.reorder(order, spare, threads);
+      VectorColumn<Dim>::reordered(inverse_inertia, order, spare, threads);
     }
-    std::vector<std::uint32_t> numbers(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) numbers[k] = number_of(order[k]);
+    Column<std::uint32_t> numbers(order.size());
+    threads.in_parallel(order.size(), [&](std::size_t first, std::size_t end) {
+      for (std::size_t k = first; k < end; ++k) numbers[k] = number_of(order[k]);
+    });
     number.swap(numbers);
   }
 

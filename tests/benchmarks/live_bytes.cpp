@@ -1,12 +1,13 @@
 #include "tests/benchmarks/live_bytes.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
 
 namespace {
 
-std::int64_t live = 0;
+std::atomic<std::int64_t> live = 0;
 
 /// Before each block stands its size; as wide as the strictest alignment, so that the block keeps its own.
 constexpr std::size_t kHeader = __STDCPP_DEFAULT_NEW_ALIGNMENT__;

@@ -3,7 +3,8 @@
 //   carom-step-toi --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
 //
 // Rows are EVOLVER/DIMENSION/KIND/BALLS; `ns` is nanoseconds per ball and step, `bytes` what the simulation
-// holds per ball. Only ratios of one run carry over to other machines.
+// holds per ball. Rows that end in N-threads are for the gain by threads, and their `ns` are of real time:
+// the machine must have as many cores to spare. Only ratios of one run carry over to other machines.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -90,10 +91,11 @@ std::int64_t steps_for(std::size_t balls) {
 }
 
 void run_evolver(::benchmark::State& state, const std::string& evolver, int dimension, Kind kind,
-                 std::size_t balls) {
+                 std::size_t balls, std::size_t threads = 1) {
   const Scenario& scene = gas(dimension, kind, balls);
+  const Variant variant{evolver, {}, PairSkin::kChosen, threads};
   const std::int64_t heap_before = live_bytes();
-  std::unique_ptr<Simulation> simulation = compose(scene, {evolver, {}});
+  std::unique_ptr<Simulation> simulation = compose(scene, variant);
   simulation->advance(kStep_s, kFirstSteps);
   // Balls do not stay in a corner: these begin anew, so that for any number of them it is as full.
   const std::int64_t steps = kind == Kind::corner ? kStepsInCorner : steps_for(balls);
@@ -101,7 +103,7 @@ void run_evolver(::benchmark::State& state, const std::string& evolver, int dime
     simulation->advance(kStep_s, steps);
     if (kind != Kind::corner) continue;
     state.PauseTiming();
-    simulation = compose(scene, {evolver, {}});
+    simulation = compose(scene, variant);
     simulation->advance(kStep_s, kFirstSteps);
     state.ResumeTiming();
   }
@@ -116,6 +118,19 @@ void run_plain(::benchmark::State& state, std::size_t balls) {
   const std::int64_t steps = steps_for(balls);
   for (auto _ : state) plain.advance(kStep_s, steps);
   report(state, balls, steps);
+}
+
+void add_threads() {
+  for (const std::size_t balls : {10'000U, 100'000U, 1'000'000U}) {
+    for (const char* evolver : {"step", "toi"}) {
+      for (const std::size_t threads : {1U, 2U}) {
+        const auto name = fmt::format("{}/3d/equal/{}/{}-threads", evolver, balls, threads);
+        ::benchmark::RegisterBenchmark(name.c_str(), [=](::benchmark::State& state) {
+          run_evolver(state, evolver, 3, Kind::equal, balls, threads);
+        })->UseRealTime();
+      }
+    }
+  }
 }
 
 void add_all() {
@@ -142,6 +157,7 @@ void add_all() {
 
 int main(int argc, char** argv) {
   carom::benchmark::add_all();
+  carom::benchmark::add_threads();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();

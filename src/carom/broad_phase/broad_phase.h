@@ -19,7 +19,8 @@ using BallPair = std::pair<std::uint32_t, std::uint32_t>;
 /// phase reports exactly these pairs, in an order of its own; what follows does not depend on the order.
 ///
 /// This is how an evolver sees it: one call a step, and one for each ball that was hit. Inside, each is a
-/// template that visits pairs without calls.
+/// template that visits pairs without calls. One whose build() takes threads, and whose for_each_pair() a
+/// stretch of its balls, is shared among threads.
 template <int Dim>
 class BroadPhase {
  public:
@@ -32,10 +33,11 @@ class BroadPhase {
 
   /// Starts a step. Positions and bounds are columns of the caller's: the positions stay as they are during
   /// the step, the bounds may grow.
-  virtual void build(const VectorColumn<Dim>& position, std::span<const double> bound) = 0;
+  virtual void build(const VectorColumn<Dim>& position, std::span<const double> bound,
+                     const Threads& threads) = 0;
 
   /// Replaces `pairs` by every pair that may meet, each once.
-  virtual void find_pairs(std::vector<BallPair>& pairs) const = 0;
+  virtual void find_pairs(Column<BallPair>& pairs, const Threads& threads) const = 0;
 
   /// Says that bound[ball] has grown.
   virtual void bound_grew(std::size_t ball) = 0;
@@ -45,7 +47,7 @@ class BroadPhase {
 
   /// Replaces `balls` by all balls in an order in which neighbours stand together; by none where the broad
   /// phase has no such order. @pre build() was called
-  virtual void find_order(std::vector<std::uint32_t>& balls) const = 0;
+  virtual void find_order(Column<std::uint32_t>& balls) const = 0;
 };
 
 /// A broad phase as an evolver takes it, made from one that visits.
@@ -54,15 +56,30 @@ class BroadPhaseOf final : public BroadPhase<Dim> {
  public:
   std::string_view name() const override { return Visitor::kName; }
 
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound) override {
-    visitor_.build(position, bound);
+  void build(const VectorColumn<Dim>& position, std::span<const double> bound,
+             const Threads& threads) override {
+    if constexpr (requires { visitor_.build(position, bound, threads); }) {
+      visitor_.build(position, bound, threads);
+    } else {
+      visitor_.build(position, bound);
+    }
   }
 
-  void find_pairs(std::vector<BallPair>& pairs) const override {
+  void find_pairs(Column<BallPair>& pairs, const Threads& threads) const override {
+    const auto into = [](Column<BallPair>& found) {
+      return [&found](std::size_t i, std::size_t j) {
+        found.emplace_back(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+      };
+    };
     pairs.clear();
-    visitor_.for_each_pair([&pairs](std::size_t i, std::size_t j) {
-      pairs.emplace_back(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
-    });
+    if constexpr (requires { visitor_.for_each_pair(0, 0, into(pairs)); }) {
+      threads.collect(visitor_.size(), pairs,
+                      [&](std::size_t first, std::size_t end, Column<BallPair>& found) {
+                        visitor_.for_each_pair(first, end, into(found));
+                      });
+    } else {
+      visitor_.for_each_pair(into(pairs));
+    }
   }
 
   void bound_grew(std::size_t ball) override { visitor_.bound_grew(ball); }
@@ -73,7 +90,7 @@ class BroadPhaseOf final : public BroadPhase<Dim> {
         ball, [&others](std::size_t other) { others.push_back(static_cast<std::uint32_t>(other)); });
   }
 
-  void find_order(std::vector<std::uint32_t>& balls) const override {
+  void find_order(Column<std::uint32_t>& balls) const override {
     balls.clear();
     if constexpr (requires { visitor_.find_order(balls); }) visitor_.find_order(balls);
   }

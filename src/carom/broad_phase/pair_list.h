@@ -15,16 +15,16 @@
 
 namespace carom {
 
-/// Calls at(k) for every k < count that passes the test. No branch hangs on what the test says: of many that
-/// fail few pass, and which ones no processor can foresee.
+/// Calls at(k) for every k from begin on, but without end, that passes the test. No branch hangs on what the
+/// test says: of many that fail few pass, and which ones no processor can foresee.
 template <class Test, class At>
-void for_each_passing(std::size_t count, const Test& test, const At& at) {
+void for_each_passing(std::size_t begin, std::size_t end, const Test& test, const At& at) {
   constexpr std::size_t kBlock = 256;
   std::array<std::size_t, kBlock> passing;
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    const std::size_t end = std::min(first + kBlock, count);
+  for (std::size_t first = begin; first < end; first += kBlock) {
+    const std::size_t block_end = std::min(first + kBlock, end);
     std::size_t found = 0;
-    for (std::size_t k = first; k < end; ++k) {
+    for (std::size_t k = first; k < block_end; ++k) {
       passing[found] = k;
       found += test(k) ? 1U : 0U;
     }
@@ -48,8 +48,8 @@ enum class PairSkin { kChosen, kNone };
 template <int Dim>
 class PairList {
  public:
-  PairList(std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin)
-      : broad_phase_(std::move(broad_phase)), skin_(skin) {}
+  PairList(std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin, const Threads& threads)
+      : broad_phase_(std::move(broad_phase)), skin_(skin), threads_(threads) {}
 
   /// Whether balls that go at most this much farther, m, can touch only in pairs that the list has.
   bool holds(double way_m = 0.0) const {
@@ -79,10 +79,10 @@ class PairList {
   bool sort(World<Dim>& world) {
     if (builds_in_this_order_ < kBuildsInAnOrder || bound_.empty()) return false;
     builds_in_this_order_ = 0;
-    std::vector<std::uint32_t> order;
+    Column<std::uint32_t> order;
     broad_phase_->find_order(order);
     if (order.empty()) return false;
-    world.reorder(order);
+    world.reorder(order, threads_);
     enough_m_ = kNothingHolds;
     return true;
   }
@@ -95,11 +95,13 @@ class PairList {
              const std::vector<Plane<Dim>>& planes, const Way& way_m) {
     choose_skin(world);
     bound_.resize(world.size());
-    for (std::size_t i = 0; i < bound_.size(); ++i) {
-      bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
-    }
-    broad_phase_->build(position, bound_);
-    broad_phase_->find_pairs(pairs_);
+    threads_.in_parallel(world.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
+      }
+    });
+    broad_phase_->build(position, bound_, threads_);
+    broad_phase_->find_pairs(pairs_, threads_);
     find_planes(world, planes);
     forget_ways(world);
     ++builds_in_this_order_;
@@ -129,27 +131,32 @@ class PairList {
   /// been made with it: with n balls in a unit of space around each, ½ n C R^Dim pairs are nearer than R.
   void choose_skin(const World<Dim>& world) {
     if (skin_ == PairSkin::kNone || world.size() == 0) return;
-    double radii = 0.0;
-    for (const double radius : world.radius) radii += radius;
-    const double diameter = 2.0 * radii / static_cast<double>(world.size());
     if (half_skin_m_ == 0.0) {
-      half_skin_m_ = 0.5 * kFirstGuess * diameter;
+      double radii = 0.0;
+      for (const double radius : world.radius) radii += radius;
+      diameter_m_ = 2.0 * radii / static_cast<double>(world.size());
+      half_skin_m_ = 0.5 * kFirstGuess * diameter_m_;
       return;
     }
-    const double volume = std::pow(diameter + 2.0 * half_skin_m_, Dim);
+    const double volume = std::pow(diameter_m_ + 2.0 * half_skin_m_, Dim);
     const double pairs_per_ball = static_cast<double>(pairs_.size() + 1) / static_cast<double>(world.size());
-    const double wanted = std::pow(diameter, Dim) + kMorePairs / pairs_per_ball * volume;
-    const double half_skin_m = 0.5 * (std::pow(wanted, 1.0 / Dim) - diameter);
+    const double wanted = std::pow(diameter_m_, Dim) + kMorePairs / pairs_per_ball * volume;
+    const double half_skin_m = 0.5 * (std::pow(wanted, 1.0 / Dim) - diameter_m_);
     half_skin_m_ = std::clamp(half_skin_m, 0.5 * half_skin_m_, 2.0 * half_skin_m_);
   }
 
   void find_planes(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
     besides_.clear();
     for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
-      for_each_passing(
-          world.size(),
-          [&](std::size_t ball) { return planes[plane].gap(world.position[ball], bound_[ball]) <= 0.0; },
-          [&](std::size_t ball) { besides_.emplace_back(static_cast<std::uint32_t>(ball), plane); });
+      const auto is_beside = [&](std::size_t ball) {
+        return planes[plane].gap(world.position[ball], bound_[ball]) <= 0.0;
+      };
+      threads_.collect(world.size(), besides_,
+                       [&](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
+                         for_each_passing(begin, end, is_beside, [&](std::size_t ball) {
+                           found.emplace_back(static_cast<std::uint32_t>(ball), plane);
+                         });
+                       });
     }
   }
 
@@ -158,10 +165,11 @@ class PairList {
   void forget_ways(const World<Dim>& world) {
     double farthest = 0.0;
     for (int axis = 0; axis < Dim; ++axis) {
-      for (const double place : world.position.axis(axis)) farthest = std::max(farthest, std::abs(place));
+      const std::span<const double> places = world.position.axis(axis);
+      farthest = std::max(
+          farthest, threads_.largest(places.size(), [&](std::size_t i) { return std::abs(places[i]); }));
     }
-    double widest = 0.0;
-    for (const double bound : bound_) widest = std::max(widest, bound);
+    const double widest = threads_.largest(bound_.size(), [&](std::size_t i) { return bound_[i]; });
     rounding_m_ = 4.0 * kEpsilon * (farthest + widest);
     enough_m_ = skin_ == PairSkin::kNone ? kNothingHolds : half_skin_m_ - 2.0 * rounding_m_;
     travelled_m_ = 0.0;
@@ -171,14 +179,16 @@ class PairList {
 
   std::unique_ptr<BroadPhase<Dim>> broad_phase_;
   PairSkin skin_;
+  const Threads& threads_;
+  double diameter_m_ = 0.0;  ///< mean
   double half_skin_m_ = 0.0;
   double enough_m_ = kNothingHolds;  ///< how far a ball may go until the list is worth nothing
   double travelled_m_ = 0.0;
   double rounding_m_ = 0.0;  ///< of coordinates, in a step
   double farthest_jump_m_ = 0.0;
-  std::vector<float> jumps_m_;  ///< of each ball; empty before the first
-  std::vector<double> bound_;   ///< m, radius and how far the ball may get from where it was
-  std::vector<BallPair> pairs_;
+  Column<float> jumps_m_;  ///< of each ball; empty before the first
+  Column<double> bound_;   ///< m, radius and how far the ball may get from where it was
+  Column<BallPair> pairs_;
   std::vector<BallPair> besides_;
   int builds_in_this_order_ = kBuildsInAnOrder;
 };

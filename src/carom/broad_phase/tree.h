@@ -39,11 +39,20 @@ class Tree {
     note_nodes();
   }
 
-  /// Every pair is found at that of its two nodes which comes first.
+  std::size_t size() const { return items_.size(); }
+
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
+    for_each_pair(0, size(), visit);
+  }
+
+  /// The pairs of a stretch of the balls as they stand in the nodes: of all nodes that begin there. Every
+  /// pair is found at that of its two nodes which comes first.
+  template <class Visit>
+  void for_each_pair(std::size_t begin, std::size_t end, Visit&& visit) const {
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       const Range own = nodes_[n].own;
+      if (own.first < begin || own.first >= end) continue;
       for (std::uint32_t a = own.first; a < own.end; ++a) {
         for (std::uint32_t b = a + 1; b < own.end; ++b) visit_if_near(items_[a], items_[b], visit);
       }
@@ -75,7 +84,7 @@ class Tree {
   }
 
   /// Node by node, each before those below it: balls that are found together stand together.
-  void find_order(std::vector<std::uint32_t>& balls) const {
+  void find_order(Column<std::uint32_t>& balls) const {
     for (const Item& item : items_) balls.push_back(item.ball);
   }
 
@@ -278,11 +287,11 @@ class Tree {
   }
 
   std::span<const double> bound_;
-  std::vector<Item> items_;  ///< the balls, node by node
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> place_of_;  ///< of each ball in items_
-  std::vector<Item> sorted_;             ///< for use while building
-  std::vector<std::uint8_t> part_of_;    ///< the same
+  Column<Item> items_;  ///< the balls, node by node
+  Column<Node> nodes_;
+  Column<std::uint32_t> place_of_;  ///< of each ball in items_
+  Column<Item> sorted_;             ///< for use while building
+  Column<std::uint8_t> part_of_;    ///< the same
   [[no_unique_address]] Count count_;
 };
 

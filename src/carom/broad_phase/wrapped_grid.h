@@ -27,22 +27,32 @@ class WrappedGrid {
  public:
   static constexpr std::string_view kName = "wrapped-grid";
 
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound) {
+  void build(const VectorColumn<Dim>& position, std::span<const double> bound,
+             const Threads& threads = Threads()) {
     position_ = &position;
     bound_ = bound;
-    largest_bound_ = 0.0;
-    for (const double each : bound) largest_bound_ = std::max(largest_bound_, each);
+    largest_bound_ = threads.largest(bound.size(), [&](std::size_t ball) { return bound[ball]; });
     cells_per_m_ = 0.5 / (largest_bound_ * (1.0 + kSlack));
     choose_shape();
-    sort_into_cells();
+    sort_into_cells(threads);
   }
 
-  /// Each cell meets itself and those behind it: of two neighbours one is behind the other.
+  std::size_t size() const { return bound_.size(); }
+
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
-    if (2.0 * largest_bound_ * cells_per_m_ >= 1.0) return for_each_pair_of_grown(visit);
+    for_each_pair(0, size(), visit);
+  }
+
+  /// The pairs of a stretch of the balls as they stand in the cells: of all rows that begin there. Each cell
+  /// meets itself and those behind it: of two neighbours one is behind the other.
+  template <class Visit>
+  void for_each_pair(std::size_t begin, std::size_t end, Visit&& visit) const {
+    if (2.0 * largest_bound_ * cells_per_m_ >= 1.0) return for_each_pair_of_grown(begin, end, visit);
     const std::int32_t rows = shape_[1] * (Dim == 3 ? shape_[Dim - 1] : 1);
     for (std::int32_t row = 0; row < rows; ++row) {
+      const std::uint32_t row_begin = cells(row, 0, 0).first;
+      if (row_begin < begin || row_begin >= end) continue;
       const auto behind = rows_behind(row);
       for (std::int32_t x = 0; x < shape_[0]; ++x) {
         const Stretch own = cells(row, x, 1);
@@ -84,7 +94,7 @@ class WrappedGrid {
   }
 
   /// Cell by cell.
-  void find_order(std::vector<std::uint32_t>& balls) const { balls = ball_at_; }
+  void find_order(Column<std::uint32_t>& balls) const { balls = ball_at_; }
 
   const Count& count() const { return count_; }
 
@@ -155,27 +165,45 @@ class WrappedGrid {
   }
 
   /// Counting sort.
-  void sort_into_cells() {
+  void sort_into_cells(const Threads& threads) {
     const std::size_t count = bound_.size();
-    std::vector<std::uint32_t> cell_of(count, 0);
-    std::int64_t cells = 1;
+    Column<std::uint32_t> cell_of(count, 0);
+    threads.in_parallel(count, [&](std::size_t begin, std::size_t end) { find_cells(begin, end, cell_of); });
+    std::size_t cells = 1;
+    for (const std::int32_t along : shape_) cells *= static_cast<std::size_t>(along);
+    start_.resize(cells + 1);
+    start_[cells] = static_cast<std::uint32_t>(count);
+    ball_at_.resize(count);
+    threads.in_parallel(cells, [&](std::size_t begin, std::size_t end) { fill_cells(begin, end, cell_of); });
+    count_.build_operations(cells + 2 * count);
+  }
+
+  void find_cells(std::size_t begin, std::size_t end, std::span<std::uint32_t> cell_of) const {
     for (int axis = Dim; axis-- > 0;) {
       const auto k = static_cast<std::size_t>(axis);
       const std::span<const double> places = std::as_const(*position_).axis(axis);
-      for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t i = begin; i < end; ++i) {
         const std::int32_t along = wrapped(cell_along(axis, places[i]), k);
         cell_of[i] = cell_of[i] * static_cast<std::uint32_t>(shape_[k]) + static_cast<std::uint32_t>(along);
       }
-      cells *= shape_[k];
     }
-    start_.assign(static_cast<std::size_t>(cells) + 1, 0);
-    for (const std::uint32_t cell : cell_of) ++start_[cell];
-    std::uint32_t end = 0;
-    for (std::uint32_t& start : start_) start = end += start;
+  }
+
+  /// Fills a stretch of the cells: threads look at the cells of all balls, and write to their own stretch.
+  void fill_cells(std::size_t begin, std::size_t end, std::span<const std::uint32_t> cell_of) {
+    const auto is_before = [begin](std::uint32_t cell) { return cell < begin; };
+    const auto is_own = [begin, end](std::uint32_t cell) { return cell - begin < end - begin; };
+    std::fill(start_.data() + begin, start_.data() + end, 0U);
+    for (const std::uint32_t cell : cell_of) {
+      if (is_own(cell)) ++start_[cell];
+    }
+    auto filled =
+        static_cast<std::uint32_t>(begin == 0 ? 0 : std::count_if(cell_of.begin(), cell_of.end(), is_before));
+    for (std::size_t cell = begin; cell < end; ++cell) start_[cell] = filled += start_[cell];
     // Filled from behind, so that every end of a cell becomes its start.
-    ball_at_.resize(count);
-    for (std::size_t i = count; i-- > 0;) ball_at_[--start_[cell_of[i]]] = static_cast<std::uint32_t>(i);
-    count_.build_operations(static_cast<std::size_t>(cells) + 2 * count);
+    for (std::size_t i = cell_of.size(); i-- > 0;) {
+      if (is_own(cell_of[i])) ball_at_[--start_[cell_of[i]]] = static_cast<std::uint32_t>(i);
+    }
   }
 
   // --- rows of cells, which may be numbered beyond the ends of the array
@@ -235,8 +263,8 @@ class WrappedGrid {
 
   /// Some reach beyond the neighbouring cells.
   template <class Visit>
-  void for_each_pair_of_grown(Visit&& visit) const {
-    for (std::size_t i = 0; i < bound_.size(); ++i) {
+  void for_each_pair_of_grown(std::size_t begin, std::size_t end, Visit&& visit) const {
+    for (std::size_t i = begin; i < end; ++i) {
       for_each_near(i, [&](std::size_t j) {
         if (i < j) visit(i, j);
       });
@@ -249,8 +277,8 @@ class WrappedGrid {
   double cells_per_m_ = 0.0;
   std::array<std::int32_t, Dim> shape_{};  ///< cells along each axis
   std::array<double, Dim> per_turn_{};     ///< 1/shape_
-  std::vector<std::uint32_t> start_;       ///< of each cell in ball_at_, x fastest
-  std::vector<std::uint32_t> ball_at_;     ///< the balls, cell by cell
+  Column<std::uint32_t> start_;            ///< of each cell in ball_at_, x fastest
+  Column<std::uint32_t> ball_at_;          ///< the balls, cell by cell
   [[no_unique_address]] Count count_;
 };
 

@@ -237,9 +237,9 @@ class EventFlights {
 
   std::vector<Body> bodies_;
   std::vector<std::uint32_t> name_;      ///< numbers in the scene
-  std::vector<double> inverse_mass_;     ///< 1/kg
+  Column<double> inverse_mass_;          ///< 1/kg
   VectorColumn<kSpinAxes<Dim>> spin_;    ///< rad/s, empty without spin
-  std::vector<double> inverse_inertia_;  ///< 1/(kg m²), empty without spin
+  Column<double> inverse_inertia_;       ///< 1/(kg m²), empty without spin
   std::vector<Vec<Dim>> accelerations_;  ///< m/s², empty without gravity
   std::vector<std::uint32_t> way_;       ///< which of them a ball has, empty without gravity
   World<Dim> pair_;                      ///< the balls of the impact at hand, as a law takes them

@@ -28,8 +28,9 @@ class Flights {
   /// Whether a push that lasts turns balls: then spins change in flight.
   static constexpr bool kTurning = kAccelerates && kFriction;
 
-  Flights(const Scenario& scene, std::unique_ptr<Flight<Dim>> model)
-      : world_(scene.balls, scene.effects.spin),
+  Flights(const Scenario& scene, std::unique_ptr<Flight<Dim>> model, const Threads& threads)
+      : threads_(threads),
+        world_(scene.balls, scene.effects.spin),
         model_(std::move(model)),
         clock_(world_.size(), 0.0),
         stamp_(world_.size(), 0),
@@ -64,8 +65,10 @@ class Flights {
   void begin_step(double step_s) {
     step_s_ = step_s;
     if constexpr (kAccelerates) {
-      model_->accelerations(world_, step_s, acceleration_);
-      field_speed_ = step_s * largest_norm(acceleration_);
+      threads_.in_parallel(size(), [&](std::size_t begin, std::size_t end) {
+        model_->accelerations(world_, begin, end, step_s, acceleration_);
+      });
+      field_speed_ = step_s * largest_norm(acceleration_, threads_);
       measure_fastest();
     }
   }
@@ -75,7 +78,7 @@ class Flights {
     std::sort(records_.begin(), records_.end(),
               [this](const Record& a, const Record& b) { return world_.before(a.ball, b.ball); });
     for (const Record& record : records_) fly_to(record.ball, step_s_);
-    fly_all_to_end();
+    threads_.in_parallel(size(), [&](std::size_t begin, std::size_t end) { fly_to_end(begin, end); });
     for (const Record& record : records_) forget(record.ball);
     records_.clear();
   }
@@ -84,7 +87,7 @@ class Flights {
   double longest_path() const { return (fastest_ + 0.5 * field_speed_) * step_s_; }
 
   /// Makes the bound on the speeds what it is at this moment.
-  void measure_fastest() { fastest_ = largest_norm(world_.velocity); }
+  void measure_fastest() { fastest_ = largest_norm(world_.velocity, threads_); }
 
   /// Where the ball can get in this step.
   Reach<Dim> reach(std::size_t ball) const {
@@ -200,20 +203,20 @@ class Flights {
     if constexpr (kTurning) still(ball);
   }
 
-  /// What fly_to() does, for all balls; those that are there already stay.
-  void fly_all_to_end() {
+  /// What fly_to() does, for balls from one up to, but without, another; those that are there already stay.
+  void fly_to_end(std::size_t begin, std::size_t end) {
     for (int axis = 0; axis < Dim; ++axis) {
       const std::span<double> x = world_.position.axis(axis);
       const std::span<double> v = world_.velocity.axis(axis);
       if constexpr (kAccelerates) {
         const std::span<const double> a = std::as_const(acceleration_).axis(axis);
-        for (std::size_t i = 0; i < x.size(); ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
           const double tau = step_s_ - clock_[i];
           x[i] += tau * (v[i] + (0.5 * tau) * a[i]);
           v[i] += tau * a[i];
         }
       } else {
-        for (std::size_t i = 0; i < x.size(); ++i) x[i] += (step_s_ - clock_[i]) * v[i];
+        for (std::size_t i = begin; i < end; ++i) x[i] += (step_s_ - clock_[i]) * v[i];
       }
     }
   }
@@ -242,15 +245,16 @@ class Flights {
     }
   }
 
+  const Threads& threads_;
   World<Dim> world_;
   std::unique_ptr<Flight<Dim>> model_;
   Account<Dim> account_;
   double step_s_ = 0.0;
   double field_speed_ = 0.0;
   double fastest_ = std::numeric_limits<double>::infinity();  ///< m/s, no ball is faster
-  std::vector<double> clock_;  ///< s, from the start of the step: where position and velocity stand
-  std::vector<std::uint32_t> stamp_;
-  std::vector<std::uint32_t> touched_;  ///< of each ball, which of the records is its
+  Column<double> clock_;  ///< s, from the start of the step: where position and velocity stand
+  Column<std::uint32_t> stamp_;
+  Column<std::uint32_t> touched_;  ///< of each ball, which of the records is its
   std::vector<Record> records_;
   VectorColumn<Dim> acceleration_;
   VectorColumn<Dim> force_;  ///< N, by the walls and immovable balls that bear the ball

@@ -21,8 +21,11 @@ template <int Dim, class Balls>
 class Neighbours {
  public:
   Neighbours(Balls& flights, std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin,
-             const std::vector<Plane<Dim>>& planes)
-      : flights_(flights), planes_(planes), list_(std::move(broad_phase), skin), start_(flights.size()) {}
+             const std::vector<Plane<Dim>>& planes, const Threads& threads)
+      : flights_(flights),
+        planes_(planes),
+        list_(std::move(broad_phase), skin, threads),
+        start_(flights.size()) {}
 
   /// Between steps: sorts the balls in memory now and then.
   void sort() { list_.sort(flights_.world()); }

@@ -42,10 +42,11 @@ class StepEvolver final : public Simulation {
   using Law = typename Traits::Law;
 
   StepEvolver(const Scenario& scene, Parts<kDim> parts)
-      : world_(scene.balls, scene.effects.spin),
+      : threads_(parts.threads),
+        world_(scene.balls, scene.effects.spin),
         flight_(std::move(parts.flight)),
         cluster_law_(std::move(parts.cluster_law)),
-        near_(std::move(parts.broad_phase), parts.skin),
+        near_(std::move(parts.broad_phase), parts.skin, threads_),
         planes_(planes_of<kDim>(scene.walls)),
         barriers_(scene),
         surface_(scene.ball_contact),
@@ -75,6 +76,7 @@ class StepEvolver final : public Simulation {
             {"law", std::string(Law::kName)},
             {"touching_law", std::string(cluster_law_ ? cluster_law_->name() : "sequential")},
             {"broad_phase", std::string(near_.name())},
+            {"threads", static_cast<double>(threads_.count())},
             {"most_sweeps", static_cast<double>(kMostSweeps)}};
   }
 
@@ -94,18 +96,22 @@ class StepEvolver final : public Simulation {
   void move(double step_s) {
     field_speed_ = 0.0;
     if constexpr (Traits::kAccelerates) {
-      flight_->accelerations(world_, step_s, acceleration_);
-      for (std::size_t i = 0; i < world_.size(); ++i) {
-        world_.velocity.set(i, world_.velocity[i] + step_s * acceleration_[i]);
+      threads_.in_parallel(world_.size(), [&](std::size_t begin, std::size_t end) {
+        flight_->accelerations(world_, begin, end, step_s, acceleration_);
+        for (std::size_t i = begin; i < end; ++i) {
+          world_.velocity.set(i, world_.velocity[i] + step_s * acceleration_[i]);
+        }
+      });
+      field_speed_ = step_s * largest_norm(acceleration_, threads_);
+      fastest_ = largest_norm(world_.velocity, threads_);
+    }
+    threads_.in_parallel(world_.size(), [&](std::size_t begin, std::size_t end) {
+      for (int axis = 0; axis < kDim; ++axis) {
+        const std::span<double> x = world_.position.axis(axis);
+        const std::span<const double> v = std::as_const(world_.velocity).axis(axis);
+        for (std::size_t i = begin; i < end; ++i) x[i] += step_s * v[i];
       }
-      field_speed_ = step_s * largest_norm(acceleration_);
-      fastest_ = largest_norm(world_.velocity);
-    }
-    for (int axis = 0; axis < kDim; ++axis) {
-      const std::span<double> x = world_.position.axis(axis);
-      const std::span<const double> v = std::as_const(world_.velocity).axis(axis);
-      for (std::size_t i = 0; i < world_.size(); ++i) x[i] += step_s * v[i];
-    }
+    });
     near_.travelled(step_s * fastest_);
   }
 
@@ -113,9 +119,12 @@ class StepEvolver final : public Simulation {
     if (!near_.holds()) look_around();
     touches_.clear();
     const std::span<const BallPair> pairs = near_.pairs();
-    for_each_passing(
-        pairs.size(), [&](std::size_t k) { return overlap(pairs[k].first, pairs[k].second); },
-        [&](std::size_t k) { touch(pairs[k].first, pairs[k].second); });
+    threads_.collect(
+        pairs.size(), touches_, [&](std::size_t begin, std::size_t end, std::vector<Touch>& found) {
+          for_each_passing(
+              begin, end, [&](std::size_t k) { return overlap(pairs[k].first, pairs[k].second); },
+              [&](std::size_t k) { touch(pairs[k].first, pairs[k].second, found); });
+        });
     for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
     // The list is in an order of its own; the order of the contacts decides what happens.
     std::sort(touches_.begin(), touches_.end(),
@@ -125,16 +134,16 @@ class StepEvolver final : public Simulation {
   void look_around() {
     near_.sort(world_);
     near_.build(world_, world_.position, planes_, [](std::size_t) { return 0.0; });
-    fastest_ = largest_norm(world_.velocity);
+    fastest_ = largest_norm(world_.velocity, threads_);
   }
 
   bool overlap(std::uint32_t a, std::uint32_t b) const {
     return may_meet<kDim>({world_.position[a], world_.radius[a]}, {world_.position[b], world_.radius[b]});
   }
 
-  void touch(std::uint32_t a, std::uint32_t b) {
+  void touch(std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) const {
     if (!world_.before(a, b)) std::swap(a, b);
-    if (world_.inverse_mass[a] + world_.inverse_mass[b] > 0.0) touches_.push_back({a, b, false});
+    if (world_.inverse_mass[a] + world_.inverse_mass[b] > 0.0) found.push_back({a, b, false});
   }
 
   void touch_plane(std::uint32_t ball, std::uint32_t plane) {
@@ -324,6 +333,7 @@ class StepEvolver final : public Simulation {
     return (world_.position[b] - world_.position[a]).norm() - world_.radius[a] - world_.radius[b];
   }
 
+  Threads threads_;
   World<kDim> world_;
   std::unique_ptr<Flight<kDim>> flight_;
   std::unique_ptr<ClusterLaw<kDim>> cluster_law_;

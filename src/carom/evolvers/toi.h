@@ -38,10 +38,11 @@ class ToiEvolver final : public Simulation {
   using Law = typename Traits::Law;
 
   ToiEvolver(const Scenario& scene, Parts<kDim> parts)
-      : law_(law_of<Law>(parts)),
-        flights_(scene, std::move(parts.flight)),
+      : threads_(parts.threads),
+        law_(law_of<Law>(parts)),
+        flights_(scene, std::move(parts.flight), threads_),
         planes_(planes_of<kDim>(scene.walls)),
-        neighbours_(flights_, std::move(parts.broad_phase), parts.skin, planes_),
+        neighbours_(flights_, std::move(parts.broad_phase), parts.skin, planes_, threads_),
         cluster_law_(std::move(parts.cluster_law)),
         resting_(scene, flights_, neighbours_, planes_),
         barriers_(scene),
@@ -68,6 +69,7 @@ class ToiEvolver final : public Simulation {
     settings["law"] = std::string(Law::kName);
     settings["touching_law"] = std::string(cluster_law_ ? cluster_law_->name() : "sequential");
     settings["broad_phase"] = std::string(neighbours_.name());
+    settings["threads"] = static_cast<double>(threads_.count());
     return settings;
   }
 
@@ -138,13 +140,16 @@ class ToiEvolver final : public Simulation {
   void find_meetings() {
     const std::span<const BallPair> pairs = neighbours_.pairs();
     const double fall_m = flights_.step_s() * flights_.field_speed();
-    for_each_passing(
-        pairs.size(), [&](std::size_t k) { return come_near(pairs[k].first, pairs[k].second, fall_m); },
-        [&](std::size_t k) {
-          if (neighbours_.may_meet_in_step(pairs[k].first, pairs[k].second)) {
-            expect_pair(pairs[k].first, pairs[k].second);
-          }
+    coming_near_.clear();
+    threads_.collect(
+        pairs.size(), coming_near_, [&](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
+          for_each_passing(
+              begin, end, [&](std::size_t k) { return come_near(pairs[k].first, pairs[k].second, fall_m); },
+              [&](std::size_t k) {
+                if (neighbours_.may_meet_in_step(pairs[k].first, pairs[k].second)) found.push_back(pairs[k]);
+              });
         });
+    for (const auto& [a, b] : coming_near_) expect_pair(a, b);
     for (const auto& [ball, plane] : neighbours_.besides()) {
       const double reach_m = flights_.reach(ball).bound;
       if (planes_[plane].gap(world().position[ball], reach_m) <= 0.0) expect_plane(ball, plane);
@@ -373,6 +378,7 @@ class ToiEvolver final : public Simulation {
 
   static constexpr std::uint32_t kEndless = std::numeric_limits<std::uint32_t>::max();
 
+  Threads threads_;
   [[no_unique_address]] Law law_;
   Balls flights_;
   std::vector<Plane<kDim>> planes_;
@@ -385,6 +391,7 @@ class ToiEvolver final : public Simulation {
   std::uint32_t most_flights_;
   std::uint32_t most_wall_flights_;
 
+  std::vector<BallPair> coming_near_;
   std::vector<std::uint32_t> near_;
   std::vector<ClosedContact<kDim>> touching_;
   std::priority_queue<Meeting, std::vector<Meeting>, Later> meetings_to_come_{Later{flights_.world()}};

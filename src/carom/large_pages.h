@@ -1,0 +1,53 @@
+#pragma once
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+namespace carom {
+
+/// Takes memory as std::allocator does, and asks the system to back what is large with large pages. Where it
+/// has none to give nothing is lost.
+///
+/// The trick: in columns of 10⁶ balls, what is looked at together lies in more pages of 4 KiB than the
+/// processor remembers the places of; of pages of 2 MiB it remembers all.
+template <class T>
+struct LargePages {
+  using value_type = T;
+
+  LargePages() = default;
+  template <class U>
+  LargePages(const LargePages<U>& /*other*/) {}
+
+  T* allocate(std::size_t count) {
+    const std::size_t bytes = count * sizeof(T);
+    void* const block = ::operator new(bytes);
+    if (bytes >= kLarge) ask_for_large_pages(block, bytes);
+    return static_cast<T*>(block);
+  }
+
+  void deallocate(T* block, std::size_t count) { ::operator delete(block, count * sizeof(T)); }
+
+  friend bool operator==(const LargePages& /*a*/, const LargePages& /*b*/) { return true; }
+
+ private:
+  /// Smaller columns lie in few pages of any size. From here on neighbouring columns share large pages.
+  static constexpr std::size_t kLarge = 256U * 1024U;
+
+  /// Only advice: that it is not taken is no error.
+  static void ask_for_large_pages(void* block, std::size_t bytes) {
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const std::size_t before = reinterpret_cast<std::uintptr_t>(block) % page;
+    madvise(static_cast<std::byte*>(block) - before, before + bytes, MADV_HUGEPAGE);
+  }
+};
+
+/// One value of each ball, or of each of whatever there are about as many of.
+template <class T>
+using Column = std::vector<T, LargePages<T>>;
+
+}  // namespace carom
