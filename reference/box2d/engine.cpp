@@ -1,16 +1,19 @@
 #include <fmt/format.h>
 
-#include "engine/tuning.h"
 #include "reference/box2d/simulation.h"
-#include "reference/common/iterations.h"
+#include "reference/common/stepped_engine.h"
 
 namespace carom::box2d {
 
 namespace {
 
+using Adapter = reference::SteppedEngine<Box2dSimulation, Setup, kSwitches.size()>;
+
 /// Box2D 2.4: circles in the plane, in single precision, with a fixed step.
-class Box2dEngine final : public Engine, public Tunable {
+class Box2dEngine final : public Adapter {
  public:
+  Box2dEngine() : Adapter(kSwitches, "velocity_iterations", &Setup::velocity_iterations) {}
+
   EngineInfo info() const override {
     EngineInfo info;
     info.name = "box2d";
@@ -22,24 +25,16 @@ class Box2dEngine final : public Engine, public Tunable {
         {"default", "the settings of its manual's first example"},
     };
     info.limits = {
-        "Single precision: velocities after an impact are right to about 1e-7, positions to 1e-7 of the "
-        "scene.",
-        "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, "
-        "and an oblique impact turns by the angle of that place. Only a shorter step helps.",
+        reference::kSinglePrecision,
+        reference::kLateContacts,
         "Gravity is added before a contact reflects the velocity, so each bounce under gravity gains energy: "
         "a ball dropped from 10 m at 1 ms rises to 11.45 m after 100 bounces.",
-        "Drag and gravity are integrated with order 1 in the step.",
+        reference::kFlightOfOrderOne,
         "No body moves farther than 2 length units in a step; the scene is scaled so that this is not met.",
     };
-    const std::string own_law = "it resolves touching contacts by its own iteration of pairwise impulses";
-    info.cannot = {
-        {Feature::space, "Box2D is two-dimensional"},
-        {Feature::tangential_restitution, "its friction law has no tangential rebound"},
-        {Feature::simultaneous, own_law},
-        {Feature::generalized_reflections, own_law},
-        {Feature::slab, "the adapter makes walls only"},
-        {Feature::barrier, "no rigid-body engine tunnels"},
-    };
+    info.cannot = reference::lacks_of_rigid_bodies(
+        "it resolves touching contacts by its own iteration of pairwise impulses");
+    info.cannot.emplace(Feature::space, "Box2D is two-dimensional");
     info.switches = reference::switches_of(kSwitches);
     return info;
   }
@@ -61,29 +56,9 @@ class Box2dEngine final : public Engine, public Tunable {
     return {};
   }
 
-  std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const override {
-    return std::make_unique<Box2dSimulation>(scenario, setup_for(scenario, profile));
-  }
-
-  std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
-                                              std::span<const std::string> switched) const override {
-    const Setup other = setup_for(scenario, reference::other_profile(profile));
-    return std::make_unique<Box2dSimulation>(
-        scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
-  }
-
-  bool takes_steps(const Scenario& /*scene*/) const override { return true; }
-  ClaimedOrder claimed_order(const Scenario& /*scene*/) const override { return 1; }
-
-  std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
-    return reference::iteration_tunings("velocity_iterations", setup_for(scene, profile).velocity_iterations);
-  }
-
-  std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,
-                                           const Tuned& tuned) const override {
-    Setup setup = setup_for(scene, profile);
-    setup.velocity_iterations = reference::iterations_of(tuned);
-    return std::make_unique<Box2dSimulation>(scene, setup);
+ private:
+  Setup setup_of(const Scenario& scene, std::string_view profile) const override {
+    return setup_for(scene, profile);
   }
 };
 

@@ -2,9 +2,8 @@
 
 #include <cmath>
 
-#include "engine/tuning.h"
 #include "reference/bullet/simulation.h"
-#include "reference/common/iterations.h"
+#include "reference/common/stepped_engine.h"
 
 namespace carom::bullet {
 
@@ -18,9 +17,13 @@ constexpr const char* kName = "bullet";
 constexpr const char* kPrecision = "float32";
 #endif
 
+using Adapter = reference::SteppedEngine<BulletSimulation, Setup, kSwitches.size()>;
+
 /// Bullet 3: spheres in space or confined to a plane, with a fixed step. Compiled once per precision.
-class BulletEngine final : public Engine, public Tunable {
+class BulletEngine final : public Adapter {
  public:
+  BulletEngine() : Adapter(kSwitches, "velocity_iterations", &Setup::iterations) {}
+
   EngineInfo info() const override {
     EngineInfo info;
     info.name = kName;
@@ -32,26 +35,15 @@ class BulletEngine final : public Engine, public Tunable {
         {"default", "the settings of its own HelloWorld example"},
     };
     info.limits = {
-        "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, "
-        "and an "
-        "oblique impact turns by the angle of that place. Only a shorter step helps.",
-        "Drag and gravity are integrated with order 1 in the step.",
-        "Rough balls in contact do not keep their angular momentum: friction acts at two points, an overlap "
-        "apart.",
+        reference::kLateContacts,
+        reference::kFlightOfOrderOne,
+        reference::kFrictionAtTwoPoints,
     };
 #if !defined(BT_USE_DOUBLE_PRECISION)
-    info.limits.emplace_back(
-        "Single precision: velocities after an impact are right to about 1e-7, positions to 1e-7 of the "
-        "scene.");
+    info.limits.emplace_back(reference::kSinglePrecision);
 #endif
-    const std::string own_law = "it resolves touching contacts by its own iteration of pairwise impulses";
-    info.cannot = {
-        {Feature::tangential_restitution, "its friction law has no tangential rebound"},
-        {Feature::simultaneous, own_law},
-        {Feature::generalized_reflections, own_law},
-        {Feature::slab, "the adapter makes walls only"},
-        {Feature::barrier, "no rigid-body engine tunnels"},
-    };
+    info.cannot = reference::lacks_of_rigid_bodies(
+        "it resolves touching contacts by its own iteration of pairwise impulses");
     info.switches = reference::switches_of(kSwitches);
     return info;
   }
@@ -77,33 +69,9 @@ class BulletEngine final : public Engine, public Tunable {
     return {};
   }
 
-  std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const override {
-    return std::make_unique<BulletSimulation>(scenario, setup_for(scenario, profile));
-  }
-
-  std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
-                                              std::span<const std::string> switched) const override {
-    const Setup other = setup_for(scenario, reference::other_profile(profile));
-    return std::make_unique<BulletSimulation>(
-        scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
-  }
-
-  bool takes_steps(const Scenario& /*scene*/) const override {
-    return true;
-  }
-  ClaimedOrder claimed_order(const Scenario& /*scene*/) const override {
-    return 1;
-  }
-
-  std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
-    return reference::iteration_tunings("velocity_iterations", setup_for(scene, profile).iterations);
-  }
-
-  std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,
-                                           const Tuned& tuned) const override {
-    Setup setup = setup_for(scene, profile);
-    setup.iterations = reference::iterations_of(tuned);
-    return std::make_unique<BulletSimulation>(scene, setup);
+ private:
+  Setup setup_of(const Scenario& scene, std::string_view profile) const override {
+    return setup_for(scene, profile);
   }
 };
 

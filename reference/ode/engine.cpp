@@ -1,5 +1,4 @@
-#include "engine/tuning.h"
-#include "reference/common/iterations.h"
+#include "reference/common/stepped_engine.h"
 #include "reference/ode/simulation.h"
 
 namespace carom::ode {
@@ -8,10 +7,12 @@ namespace {
 
 static_assert(sizeof(dReal) == sizeof(double), "Debian's ODE computes in double precision");
 
+using Adapter = reference::SteppedEngine<OdeSimulation, Setup, kSwitches.size()>;
+
 /// The Open Dynamics Engine 0.16: spheres in space or in a plane, in double precision, with a fixed step.
-class OdeEngine final : public Engine, public Tunable {
+class OdeEngine final : public Adapter {
  public:
-  OdeEngine() { dInitODE2(0); }
+  OdeEngine() : Adapter(kSwitches, "iterations", &Setup::iterations) { dInitODE2(0); }
   ~OdeEngine() override { dCloseODE(); }
 
   EngineInfo info() const override {
@@ -25,22 +26,14 @@ class OdeEngine final : public Engine, public Tunable {
         {"default", "the settings of a new world, and the bounce threshold of its demos"},
     };
     info.limits = {
-        "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, "
-        "and an oblique impact turns by the angle of that place. Only a shorter step helps.",
-        "Drag and gravity are integrated with order 1 in the step.",
-        "No continuous collision: a ball that moves farther than two radii in a step can jump through "
-        "another.",
+        reference::kLateContacts,
+        reference::kFlightOfOrderOne,
+        reference::kNotContinuous,
         "Friction between balls acts in the middle of their overlap, so the lever arm is short by half of "
         "it.",
     };
-    const std::string own_law = "it resolves touching contacts by its own iteration over all of them";
-    info.cannot = {
-        {Feature::tangential_restitution, "its friction law has no tangential rebound"},
-        {Feature::simultaneous, own_law},
-        {Feature::generalized_reflections, own_law},
-        {Feature::slab, "the adapter makes walls only"},
-        {Feature::barrier, "no rigid-body engine tunnels"},
-    };
+    info.cannot = reference::lacks_of_rigid_bodies(
+        "it resolves touching contacts by its own iteration over all of them");
     info.switches = reference::switches_of(kSwitches);
     return info;
   }
@@ -50,29 +43,9 @@ class OdeEngine final : public Engine, public Tunable {
     return profile == "faithful" ? reference::jumps_through_balls(scenario) : "";
   }
 
-  std::unique_ptr<Simulation> create(const Scenario& scenario, std::string_view profile) const override {
-    return std::make_unique<OdeSimulation>(scenario, setup_for(scenario, profile));
-  }
-
-  std::unique_ptr<Simulation> create_switched(const Scenario& scenario, std::string_view profile,
-                                              std::span<const std::string> switched) const override {
-    const Setup other = setup_for(scenario, reference::other_profile(profile));
-    return std::make_unique<OdeSimulation>(
-        scenario, reference::switched(setup_for(scenario, profile), other, switched, kSwitches));
-  }
-
-  bool takes_steps(const Scenario& /*scene*/) const override { return true; }
-  ClaimedOrder claimed_order(const Scenario& /*scene*/) const override { return 1; }
-
-  std::vector<Tuning> tunings(const Scenario& scene, std::string_view profile) const override {
-    return reference::iteration_tunings("iterations", setup_for(scene, profile).iterations);
-  }
-
-  std::unique_ptr<Simulation> create_tuned(const Scenario& scene, std::string_view profile,
-                                           const Tuned& tuned) const override {
-    Setup setup = setup_for(scene, profile);
-    setup.iterations = reference::iterations_of(tuned);
-    return std::make_unique<OdeSimulation>(scene, setup);
+ private:
+  Setup setup_of(const Scenario& scene, std::string_view profile) const override {
+    return setup_for(scene, profile);
   }
 };
 

@@ -1,9 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <variant>
-
-#include "tests/reference/energy.h"
 #include "tests/reference/support.h"
 #include "tests/reference/switches.h"
 #include "tests/support/numbers.h"
@@ -45,26 +42,6 @@ TEST_P(Bullet, Info_NamesPrecisionAndProfiles) {
   EXPECT_EQ(info.profiles[1].name, "default");
 }
 
-TEST_P(Bullet, HeadOnVelocity_MatchesExact_From01To100Mps) {
-  EXPECT_LE(head_on_sweep_error(bullet_, dimension_), rounding());
-}
-
-TEST_P(Bullet, HeadOnVelocity_MatchesExact_AnyRadius) {
-  for (const double radius : {1e-5, 1e-3, 0.05, 30.0}) {
-    EXPECT_LE(head_on_error(bullet_, dimension_, 1.0, 1.0, 100.0, radius), rounding()) << radius;
-  }
-}
-
-TEST_P(Bullet, WallBounce_MatchesExact_AnyRestitutionAndDirection) {
-  for (const double restitution : {1.0, 0.5, 0.0}) {
-    for (const double angle : {0.0, 0.4, 1.2, 2.0, 3.5, 5.9}) {
-      const Vec3 normal = Vec3(std::cos(angle), std::sin(angle), dimension_ == 3 ? angle : 0.0).normalized();
-      EXPECT_LE(wall_error(bullet_, dimension_, normal, restitution), rounding())
-          << restitution << " " << angle;
-    }
-  }
-}
-
 // By default Bullet also pushes shallow overlaps apart through the velocity, by erp2 = 0.2 of them in a step.
 TEST_P(Bullet, PairCoefficients_AreTheScenes_InBothProfiles) {
   const Contact low = {0.5, 0.1, 0.0};
@@ -81,21 +58,6 @@ TEST_P(Bullet, PairCoefficients_AreTheScenes_InBothProfiles) {
       EXPECT_NEAR(wall.restitution, walls.restitution + push, tolerance) << profile;
       EXPECT_NEAR(wall.friction, walls.friction, tolerance) << profile;
     }
-  }
-}
-
-// Sliding: Δv_t = μ (1 + e) v_n. Sticking: Δv_t = (2/7) g_t. The spin changes by (5/2) Δv_t/r.
-TEST_P(Bullet, SpinAndFriction_MatchImpactLaw_SlidingAndSticking) {
-  for (const double along_mps : {0.5, 5.0}) {
-    Scenario scene = scene_of(dimension_, 0.01, 30);
-    scene.effects.spin = true;
-    scene.wall_contact = {0.9, 0.3, 0.0};
-    scene.walls = {{Vec3::UnitY(), 0.0}};
-    scene.balls = {ball(1.0, 0.5, Vec3(0, 0.625, 0), Vec3(along_mps, -1.0, 0))};
-    const double slowed = std::min(0.3 * 1.9 * 1.0, 2.0 / 7.0 * along_mps);
-    const Probe run = after(bullet_, scene);
-    EXPECT_LE((run[0].velocity - Vec3(along_mps - slowed, 0.9, 0)).norm(), along_mps * rounding());
-    EXPECT_NEAR(run[0].spin.z(), -2.5 * slowed / 0.5, 5.0 * along_mps * rounding());
   }
 }
 
@@ -117,14 +79,6 @@ TEST_P(Bullet, DroppedBall_KeepsItsApex_Over100Bounces) {
   EXPECT_NEAR(apex_m / kHeight_m, 1.0, 1e-4);
 }
 
-TEST_P(Bullet, Ball_DoesNotRotate_WithoutSpin) {
-  const Scenario scene = gas(dimension_, 6, 1.0 / 240.0, 240);
-  for (const char* profile : {"faithful", "default"}) {
-    const Probe run = after(bullet_, scene, profile);
-    for (std::size_t i = 0; i < scene.balls.size(); ++i) EXPECT_EQ(run[i].spin, Vec3::Zero());
-  }
-}
-
 TEST_P(Bullet, PlaneScene_StaysInItsPlane) {
   if (dimension_ == 3) return;
   Scenario scene = gas(2, 8, 1.0 / 240.0, 480);
@@ -140,48 +94,6 @@ TEST_P(Bullet, PlaneScene_StaysInItsPlane) {
   }
 }
 
-TEST_P(Bullet, Account_ExplainsMomenta_InWalledGas) {
-  const Scenario scene = gas(dimension_, dimension_ == 2 ? 16 : 6, 1.0 / 240.0, 1000);
-  const Unexplained rest = unexplained(bullet_, scene);
-  EXPECT_GT(rest.tally.impacts, 500);
-  EXPECT_GT(rest.tally.external_impulse.norm(), 1.0);
-  EXPECT_LE(rest.momentum_Ns, momentum_rounding(bullet_, scene, rest.tally));
-  EXPECT_LE(rest.angular_momentum_Nms, angular_momentum_rounding(bullet_, scene));
-  // Each impact rounds the energies of two balls, 2 ε each.
-  const double per_ball = static_cast<double>(rest.tally.impacts) / static_cast<double>(scene.balls.size());
-  EXPECT_LE(rest.energy_change, 4.0 * epsilon(bullet_) * per_ball);
-}
-
-TEST_P(Bullet, Account_ExplainsMomentum_WithGravityAndFriction) {
-  Scenario scene = gas(dimension_, 6, 1.0 / 240.0, 500);
-  scene.effects.gravity = Vec3(0.3, -0.5, 0);
-  scene.effects.spin = true;
-  scene.ball_contact = scene.wall_contact = {0.9, 0.3, 0.0};
-  for (const char* profile : {"faithful", "default"}) {
-    const Unexplained rest = unexplained(bullet_, scene, profile);
-    EXPECT_LE(rest.momentum_Ns, momentum_rounding(bullet_, scene, rest.tally)) << profile;
-  }
-}
-
-// Between two balls Bullet lets friction act at two points, one on each surface, which turns the pair; so the
-// account is tested where only walls have friction.
-TEST_P(Bullet, Account_ExplainsAngularMomentum_OfFrictionAtWalls) {
-  Scenario scene = gas(dimension_, 6, 1.0 / 240.0, 500);
-  scene.effects.spin = true;
-  scene.wall_contact = {0.9, 0.3, 0.0};
-  const Unexplained rest = unexplained(bullet_, scene);
-  EXPECT_LE(rest.angular_momentum_Nms, angular_momentum_rounding(bullet_, scene));
-}
-
-TEST_P(Bullet, Bounces_AreCountedOnce_WhileBallRests) {
-  Scenario scene = scene_of(dimension_, 0.004, 2000);
-  scene.effects.gravity = Vec3(0, -9.81, 0);
-  scene.wall_contact.restitution = 0.0;
-  scene.walls = {{Vec3::UnitY(), 0.0}};
-  scene.balls = {ball(1.0, 0.5, Vec3(0, 1.0, 0))};
-  EXPECT_EQ(after(bullet_, scene).tally().impacts, 1);  // it lands and stays
-}
-
 TEST_P(Bullet, FastBall_HitsBall_AtStepsLongerThanItsRadius) {
   for (const double radii_per_step : {0.7, 1.0, 3.3, 8.0}) {
     Scenario scene = scene_of(dimension_, radii_per_step * 0.5 / 10.0, 6);
@@ -190,61 +102,6 @@ TEST_P(Bullet, FastBall_HitsBall_AtStepsLongerThanItsRadius) {
     EXPECT_NEAR(run[1].velocity.x(), 10.0, 10.0 * rounding()) << radii_per_step;
     EXPECT_EQ(run.tally().impacts, 1);
   }
-}
-
-TEST_P(Bullet, ImmovableBall_StandsOrMovesSteadily_AndIsAccountedFor) {
-  for (const double speed_mps : {0.0, -2.0}) {
-    Scenario scene = scene_of(dimension_, 0.01, 60);
-    scene.effects.gravity = Vec3(0, -1e-3, 0);
-    scene.balls = {ball(2.0, 0.5, Vec3(-1.0, 0, 0), Vec3(1.0, 0, 0)),
-                   ball(kInfinity, 0.5, Vec3(0.505, 0, 0), Vec3(speed_mps, 0, 0))};
-    const Unexplained rest = unexplained(bullet_, scene);
-    const Probe run = after(bullet_, scene);
-    EXPECT_EQ(run[1].velocity, Vec3(speed_mps, 0, 0));
-    EXPECT_NEAR(run[1].position.x(), 0.505 + 0.6 * speed_mps, 60.0 * rounding());
-    EXPECT_NEAR(run[0].velocity.x(), 2.0 * speed_mps - 1.0, 1e-5);  // the pair meets 1e-4 m off its axis
-    EXPECT_LE(rest.momentum_Ns, 60.0 * 4.0 * rounding());
-  }
-}
-
-TEST_P(Bullet, LinearDrag_IsExponential_AtAnyStep) {
-  for (const double step_s : {0.001, 0.1}) {
-    Scenario scene = scene_of(dimension_, step_s, std::lround(1.0 / step_s));
-    scene.effects.drag = Drag{Drag::Kind::linear, 0.6};
-    scene.balls = {ball(2.0, 0.5, Vec3::Zero(), Vec3(3.0, 0, 0))};
-    // Each step rounds the velocity and the power (1 - d)^h once.
-    const double tolerance = 2.0 * epsilon(bullet_) * static_cast<double>(scene.frames);
-    EXPECT_NEAR(after(bullet_, scene)[0].velocity.x() / 3.0, std::exp(-0.3), tolerance);
-  }
-}
-
-TEST_P(Bullet, QuadraticDragAndMagnus_MatchClosedForms) {
-  Scenario scene = scene_of(dimension_, 0.01, 100);
-  scene.effects.drag = Drag{Drag::Kind::quadratic, 0.6};
-  scene.balls = {ball(2.0, 0.5, Vec3::Zero(), Vec3(3.0, 0, 0))};
-  const double tolerance = 3.0 * 100.0 * 4.0 * epsilon(bullet_);  // four roundings a step
-  EXPECT_NEAR(after(bullet_, scene)[0].velocity.x(), 3.0 / (1.0 + 0.3 * 3.0), tolerance);
-
-  scene.effects.drag.reset();
-  scene.effects.spin = true;
-  scene.effects.magnus = 0.5;
-  scene.balls[0].spin = Vec3(0, 0, 4.0);  // turns the velocity at sω/m = 1 rad/s
-  EXPECT_LE((after(bullet_, scene)[0].velocity - 3.0 * Vec3(std::cos(1.0), std::sin(1.0), 0)).norm(),
-            tolerance);
-}
-
-TEST_P(Bullet, Balls_PassThroughEachOther_WithoutCollisions) {
-  Scenario scene = scene_of(dimension_, 0.01, 300);
-  scene.effects.collisions = false;
-  add_box(scene, 4.0);
-  const double z = dimension_ == 2 ? 0.0 : 2.0;
-  scene.balls = {ball(1.0, 0.5, Vec3(1, 2, z), Vec3(1, 0, 0)), ball(1.0, 0.5, Vec3(3, 2, z), Vec3(-1, 0, 0))};
-  const Probe run = after(bullet_, scene);
-  EXPECT_EQ(run.tally().impacts, 2);  // each met the opposite wall
-  EXPECT_TRUE(run.tally().walls_known);
-  EXPECT_EQ(run.tally().wall_impacts, 2);
-  EXPECT_NEAR(run.tally().wall_push_Ns, 4.0, 4.0 * rounding());
-  EXPECT_NEAR(run[0].velocity.x(), -1.0, rounding());
 }
 
 TEST_P(Bullet, DefaultProfile_LosesSlowBounces) {
@@ -284,14 +141,6 @@ TEST(BulletModules, SingleAndDouble_RunSideBySide_InOneProcess) {
   EXPECT_NEAR(single.kinetic_energy() / energy, 1.0, 1e-6);
   EXPECT_NEAR(twice.kinetic_energy() / energy, 1.0, 1e-14);
   EXPECT_LT(other.kinetic_energy() / energy, 0.99);
-}
-
-TEST_P(Bullet, Switches_MakeOneProfileTheOther_AllTogether) {
-  EXPECT_THAT(all_switched_is_not_the_other(bullet_), testing::IsEmpty());
-}
-
-TEST_P(Bullet, Switch_MovesItsOwnSettingOnly) {
-  EXPECT_THAT(one_switched_moves_others(bullet_), testing::IsEmpty());
 }
 
 // What really changes the energy of a dropped ball in the default profile, one cause at a time. Bullet's
@@ -338,16 +187,6 @@ TEST_P(Bullet, DefaultErp_AddsAFifthOfTheOverlapOverTheStepToTheBounce) {
               tolerance);
   const auto cured = bullet_.create_switched(scene, "default", std::vector<std::string>{"erp2"});
   EXPECT_NEAR(states_after(*cured, scene)[0].velocity.y(), kSpeed_mps, tolerance);
-}
-
-// Each impulse is rounded in each of the iterations that move it, in each step: 480 of them, all in one
-// direction.
-TEST_P(Bullet, EnergyAccount_ExplainsEveryJoule_InRoughLossyGas) {
-  EXPECT_LE(unexplained_energy_of_gas(bullet_, "faithful", dimension_), 480.0 * epsilon(bullet_));
-}
-
-TEST_P(Bullet, EnergyAccount_BooksAWallImpactAtTheWall) {
-  EXPECT_LE(wall_impact_error(bullet_, dimension_), 16.0 * epsilon(bullet_));
 }
 
 }  // namespace
