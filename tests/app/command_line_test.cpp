@@ -21,9 +21,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/folder.h"
+
 // The program as people and scripts use it: started as a process, judged by its exit code, what it prints and
 // what it writes.
-
 namespace carom {
 
 namespace {
@@ -91,16 +92,10 @@ std::string contents(const fs::path& file) {
 /// Starts programs in a folder of its own.
 class CommandLine : public ::testing::Test {
  protected:
-  CommandLine() : folder_(make_folder()), work_(folder_ / "work") {
+  CommandLine() : work_(folder_ / "work") {
     fs::create_directory(work_);
     write("gas.toml", kGas);
     write("space.toml", kSpace);
-  }
-  ~CommandLine() override { fs::remove_all(folder_); }
-
-  static fs::path make_folder() {
-    std::string name = (fs::temp_directory_path() / "carom-command-line-XXXXXX").string();
-    return mkdtemp(name.data()) != nullptr ? fs::path(name) : fs::path();
   }
 
   void write(const fs::path& file, const std::string& text) const { std::ofstream(work_ / file) << text; }
@@ -159,7 +154,7 @@ class CommandLine : public ::testing::Test {
     return files;
   }
 
-  fs::path folder_;
+  test::TestFolder folder_;
   fs::path work_;
 };
 

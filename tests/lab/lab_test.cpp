@@ -10,17 +10,18 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "carom/carom_engine.h"
+#include "core/files.h"
 #include "report/playback.h"
 #include "scenario/parse.h"
 #include "tests/lab/http_client.h"
+#include "tests/support/folder.h"
+#include "tests/support/two_balls.h"
 #include "trajectory/record.h"
 
 // The lab as a browser meets it: the program as a process, and HTTP.
@@ -33,26 +34,7 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const std::string kScene = R"(title = "Two"
-dimension = 2
-duration = 1.0
-step = 0.01
-frames = 10
-[[ball]]
-mass = 1
-radius = 0.1
-position = [0, 0]
-velocity = [1, 0]
-[[ball]]
-mass = 1
-radius = 0.1
-position = [0.6, 0.05]
-)";
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+const std::string kScene = kTwoBalls;
 
 /// A started program: what it prints comes through a pipe.
 class Program {
@@ -174,7 +156,7 @@ TEST_F(Lab, Engines_SayWhatTheyAreAndCannot) {
 
 TEST_F(Lab, Scene_IsItsFile_ToTheByte) {
   const json scene = json::parse(get("/api/scene?id=course/normal-mode").body);
-  EXPECT_EQ(scene.at("toml"), contents(fs::path(CAROM_SOURCE_DIR) / "scenarios/course/normal-mode.toml"));
+  EXPECT_EQ(scene.at("toml"), read_file(fs::path(CAROM_SOURCE_DIR) / "scenarios/course/normal-mode.toml"));
 }
 
 TEST_F(Lab, Run_IsAPlaybackOfWhatWasAskedFor) {
@@ -190,7 +172,7 @@ TEST_F(Lab, Run_IsAPlaybackOfWhatWasAskedFor) {
 }
 
 TEST_F(Lab, ALawOfOnesOwn_RunsBesideTheOthers_AndIsJudged) {
-  const std::string law = contents(fs::path(CAROM_SOURCE_DIR) / "scenarios/laws/momentum-for-energy.toml");
+  const std::string law = read_file(fs::path(CAROM_SOURCE_DIR) / "scenarios/laws/momentum-for-energy.toml");
   const json playback = json::parse(post("/api/run", {{"toml", kScene}, {"law", law}}).body);
   ASSERT_EQ(playback.at("runs").size(), 2U);
   EXPECT_EQ(playback.at("runs")[1].at("label"), "law@own");
@@ -234,10 +216,9 @@ TEST_F(Lab, ASavedScene_GivesTheSameBits_OnTheCommandLine) {
   body["event"] = {{"time", 0.7},
                    {"add_ball", {{"mass", 0.3}, {"radius", 0.05}, {"position", {0.0, 1.0 / 3.0}}}}};
   const std::string toml = json::parse(post("/api/toml", body).body).at("toml");
-  std::string folder = (fs::temp_directory_path() / "carom-lab-XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
-  const fs::path file = fs::path(folder) / "saved.toml";
-  std::ofstream(file) << toml;
+  const TestFolder folder;
+  const fs::path file = folder / "saved.toml";
+  write_file(file, toml);
 
   Scenario saved = *load_scene(file);
   saved.id = "lab/scene";
@@ -247,9 +228,10 @@ TEST_F(Lab, ASavedScene_GivesTheSameBits_OnTheCommandLine) {
   EXPECT_EQ(run.trajectory.balls(), 3U);
   EXPECT_EQ(post("/api/run", {{"toml", toml}}).body, playback_json(saved, {&run}));
 
-  Program program({"run", file.string(), "--engine", "carom", "--quiet", "--json", folder + "/results.json"});
+  Program program(
+      {"run", file.string(), "--engine", "carom", "--quiet", "--json", (folder / "results.json").string()});
   EXPECT_EQ(program.end(0), 0);
-  const json results = json::parse(contents(folder + "/results.json"));
+  const json results = json::parse(read_file(folder / "results.json"));
   const json final = results.at("scenes").at(0).at("runs").at(0).at("final");
   for (std::size_t i = 0; i < 3; ++i) {
     const BallState& state = run.trajectory.frame(run.trajectory.frames() - 1)[i];
@@ -258,7 +240,6 @@ TEST_F(Lab, ASavedScene_GivesTheSameBits_OnTheCommandLine) {
       EXPECT_EQ(final.at(i).at("velocity").at(static_cast<std::size_t>(axis)), state.velocity[axis]);
     }
   }
-  fs::remove_all(folder);
 }
 
 // --- what it refuses
@@ -267,14 +248,12 @@ TEST_F(Lab, BadScenes_AreAnswered_WithTheMessageOfTheCommandLine) {
   const std::string right = "radius = 0.1";
   std::string bad = kScene;
   bad.replace(bad.find(right), right.size(), "radius = -1");
-  std::string folder = (fs::temp_directory_path() / "carom-lab-XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
-  std::ofstream(fs::path(folder) / "scene.toml") << bad;
-  Program run({"run", folder + "/scene.toml"});
+  const TestFolder folder;
+  write_file(folder / "scene.toml", bad);
+  Program run({"run", (folder / "scene.toml").string()});
   std::string told = run.line();
   EXPECT_EQ(run.end(0), 2);
-  fs::remove_all(folder);
-  const std::string here = "carom: " + folder + "/";
+  const std::string here = "carom: " + (folder / "").string();
   ASSERT_TRUE(told.starts_with(here)) << told;
   told.erase(0, here.size());
   EXPECT_EQ(error_of("/api/run", {{"toml", bad}}), told);
@@ -370,7 +349,7 @@ TEST_F(Lab, ThePage_IsServedByTheNamesOfItsFiles) {
     EXPECT_THAT(start.body, HasSubstr("no page"));
     return;
   }
-  EXPECT_EQ(start.body, contents(page / "lab.html"));
+  EXPECT_EQ(start.body, read_file(page / "lab.html"));
   EXPECT_EQ(start.get_header_value("Content-Type"), "text/html; charset=utf-8");
   EXPECT_EQ(get("/lab.js").get_header_value("Content-Type"), "text/javascript; charset=utf-8");
   EXPECT_EQ(get("/lab.css").get_header_value("Content-Type"), "text/css; charset=utf-8");
