@@ -15,7 +15,7 @@ namespace carom {
 namespace {
 
 /// In fewer balls there is less to share than threads take to meet.
-constexpr std::size_t kBallsToShare = 20'000;
+constexpr std::size_t kBallsToShare = 50'000;
 
 std::map<std::string, Variant> all_variants() {
   std::map<std::string, Variant> variants = {{"carom", {}}};
