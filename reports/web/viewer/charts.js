@@ -90,15 +90,16 @@ export class OverTime {
     const width = Math.max(260, Math.min(this.element.clientWidth || 340, 560));
     const axis = { stroke: css(theme.ink), grid: { stroke: css(theme.quiet, 0.3), width: 1 }, font: "12px system-ui" };
     const value = (_, x) => (x === null ? "" : language.number(x));
+    const values = (_, list) => list.map((x) => (x === null ? "" : language.number(x, 3)));
     const make_plot = (title, series, log) => {
       const times = motions[0].times;
       const cut = (list) => times.map((_, k) => (k < list.length && Number.isFinite(list[k]) ? list[k] : null));
       const plot = new uPlot({
         title, width, height: 190, pxAlign: 0,
         scales: { x: { time: false }, y: log ? { distr: 3 } : {} },
-        axes: [axis, { ...axis, size: 62, values: (_, list) => list.map((x) => (x === null ? "" : language.number(x, 3))) }],
+        axes: [{ ...axis, values }, { ...axis, size: 62, values }],
         series: [{ label: "t, s", value }, ...series.map(({ label, stroke, dash }) => ({ label, stroke, dash, width: 2, value, points: { show: false } }))],
-        legend: { live: false },
+        legend: { live: false, markers: { dash: (u, i) => (u.series[i].dash ? "dashed" : "solid") } },
         cursor: { drag: { x: false, y: false } },
         hooks: {
           draw: [(u) => {
