@@ -30,13 +30,13 @@ struct LargePages {
     return static_cast<T*>(block);
   }
 
-  void deallocate(T* block, std::size_t count) { ::operator delete(block, count * sizeof(T)); }
+  void deallocate(T* block, std::size_t /*count*/) { ::operator delete(block); }
 
   friend bool operator==(const LargePages& /*a*/, const LargePages& /*b*/) { return true; }
 
  private:
   /// Smaller columns lie in few pages of any size. From here on neighbouring columns share large pages.
-  static constexpr std::size_t kLarge = 256U * 1024U;
+  static constexpr std::size_t kLarge = std::size_t{256} * 1024;
 
   /// Only advice: that it is not taken is no error.
   static void ask_for_large_pages(void* block, std::size_t bytes) {

@@ -12,13 +12,13 @@ struct Threads::Crew {
   using Job = std::function<void(std::size_t)>;
 
   explicit Crew(std::size_t size)
-      : count(size),
-        begins(static_cast<std::ptrdiff_t>(size)),
-        ends(static_cast<std::ptrdiff_t>(size)),
-        thrown(size) {
-    threads.reserve(size - 1);
+      : count_(size),
+        begins_(static_cast<std::ptrdiff_t>(size)),
+        ends_(static_cast<std::ptrdiff_t>(size)),
+        thrown_(size) {
+    threads_.reserve(size - 1);
     try {
-      for (std::size_t k = 1; k < size; ++k) threads.emplace_back([this, k] { serve(k); });
+      for (std::size_t k = 1; k < size; ++k) threads_.emplace_back([this, k] { serve(k); });
     } catch (const std::system_error&) {
       dismiss();
       throw;
@@ -29,11 +29,11 @@ struct Threads::Crew {
   ~Crew() { dismiss(); }
 
   void run(const Job& next) {
-    job = &next;
-    begins.arrive_and_wait();
+    job_ = &next;
+    begins_.arrive_and_wait();
     attempt(0);
-    ends.arrive_and_wait();
-    for (std::exception_ptr& each : thrown) {
+    ends_.arrive_and_wait();
+    for (std::exception_ptr& each : thrown_) {
       if (each) std::rethrow_exception(std::exchange(each, nullptr));
     }
   }
@@ -41,34 +41,34 @@ struct Threads::Crew {
  private:
   void serve(std::size_t k) {
     for (;;) {
-      begins.arrive_and_wait();
-      if (job == nullptr) return;
+      begins_.arrive_and_wait();
+      if (job_ == nullptr) return;
       attempt(k);
-      ends.arrive_and_wait();
+      ends_.arrive_and_wait();
     }
   }
 
   void attempt(std::size_t k) {
     try {
-      (*job)(k);
+      (*job_)(k);
     } catch (...) {
-      thrown[k] = std::current_exception();
+      thrown_[k] = std::current_exception();
     }
   }
 
   /// Without a job they go home. Arrives for the one that calls, and for those that never came.
   void dismiss() {
-    job = nullptr;
-    static_cast<void>(begins.arrive(static_cast<std::ptrdiff_t>(count - threads.size())));
-    threads.clear();
+    job_ = nullptr;
+    static_cast<void>(begins_.arrive(static_cast<std::ptrdiff_t>(count_ - threads_.size())));
+    threads_.clear();
   }
 
-  std::size_t count;
-  std::barrier<> begins;
-  std::barrier<> ends;
-  const Job* job = nullptr;
-  std::vector<std::exception_ptr> thrown;
-  std::vector<std::jthread> threads;
+  std::size_t count_;
+  std::barrier<> begins_;
+  std::barrier<> ends_;
+  const Job* job_ = nullptr;
+  std::vector<std::exception_ptr> thrown_;
+  std::vector<std::jthread> threads_;
 };
 
 Threads::Threads(std::size_t count)
