@@ -172,8 +172,9 @@ TEST(Generate, Polydisperse_OneToTwenty_IsPlaced) {
 TEST(Generate, HundredThousandBalls_ArePlaced) {
   for (const int dimension : {2, 3}) {
     Scenario scene = boxed(dimension);
-    add(gas(100'000, 0.2), scene);
-    EXPECT_EQ(scene.balls.size(), 100'000U);
+    constexpr int kCount = 100'000 / kPart;
+    add(gas(kCount, 0.2), scene);
+    EXPECT_EQ(scene.balls.size(), static_cast<std::size_t>(kCount));
     EXPECT_LE(deepest_overlap_of(scene), 0.0);
   }
 }
