@@ -25,6 +25,7 @@ namespace {
 
 constexpr const char* kHost = "127.0.0.1";
 constexpr int kThreads = 16;    // a browser keeps six connections open
+constexpr int kBacklog = 64;    // connections that wait to be accepted
 constexpr int kPatience_s = 5;  // for the bytes of a request, and for the next one on a connection
 constexpr const char* kJson = "application/json";
 
@@ -75,7 +76,9 @@ void give(const LabAnswer& answer, httplib::Response& response) {
 class HttpServer {
  public:
   HttpServer(const LabSetup& setup, int port) : setup_(setup) {
-    server_.set_socket_options([](socket_t socket) {
+    socket_t socket_to_listen = -1;
+    server_.set_socket_options([&socket_to_listen](socket_t socket) {
+      socket_to_listen = socket;
       // Not SO_REUSEPORT, with which two labs would share a port.
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -87,6 +90,10 @@ class HttpServer {
           fmt::format("port {} cannot be had: {}; allowed: another --port, or 0 for any that is free", port,
                       std::strerror(errno)));
     }
+    // The library has the system keep five connections until they are accepted; those of a browser with a few
+    // tabs that come at once would be reset.
+    ::listen(socket_to_listen, kBacklog);
+    server_.set_socket_options(nullptr);
     server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
     server_.set_payload_max_length(setup.limits.body_bytes);
     server_.set_read_timeout(kPatience_s);

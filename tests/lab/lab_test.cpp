@@ -361,19 +361,23 @@ TEST_F(Lab, ManyRequestsAtOnce_AreAnsweredOrToldToWait) {
   std::atomic<int> done = 0;
   std::atomic<int> waiting = 0;
   constexpr int kRequests = 14;
+  std::vector<std::string> answers(kRequests);
   std::vector<std::thread> threads;
   threads.reserve(kRequests);
   for (int i = 0; i < kRequests; ++i) {
-    threads.emplace_back([&] {
+    threads.emplace_back([&, i] {
       httplib::Client own = client();
       const httplib::Result result =
           own.Post("/api/run", json({{"toml", kScene}}).dump(), "application/json");
       if (result && result->status == 200) ++done;
       if (result && result->status == 503) ++waiting;
+      answers[static_cast<std::size_t>(i)] =
+          result ? std::to_string(result->status) + ": " + result->body.substr(0, 200)
+                 : to_string(result.error());
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(done + waiting, kRequests);
+  EXPECT_EQ(done + waiting, kRequests) << testing::PrintToString(answers);
   EXPECT_GE(done, 1);
   EXPECT_EQ(get("/api/engines").status, 200);
 }
