@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(Counts, ThreadsOf, testing::Values(1, 2, 3, 8));
 
 // --- evolvers
 
-constexpr std::int64_t kSteps = 60;
+constexpr std::int64_t kSteps = 60 / kPart;
 constexpr double kStep_s = 0.02;
 
 /// Few balls are enough: each thread's stretch begins and ends among balls that touch.
