@@ -18,9 +18,8 @@ namespace carom::reference {
 // What engines with a fixed step have in common, as their limits and lacks are told.
 
 inline constexpr const char* kLateContacts =
-    "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, and "
-    "an "
-    "oblique impact turns by the angle of that place. Only a shorter step helps.";
+    "A contact is found when a step ends, up to (speed × step) late: a ball is off by as much after it, "
+    "and an oblique impact turns by the angle of that place. Only a shorter step helps.";
 inline constexpr const char* kFlightOfOrderOne = "Drag and gravity are integrated with order 1 in the step.";
 inline constexpr const char* kNotContinuous =
     "No continuous collision: a ball that moves farther than two radii in a step can jump through another.";

@@ -87,8 +87,9 @@ EngineSource EngineCatalog::find(const std::string& name) const {
     throw InputError(fmt::format("engine {} takes part with --law FILE, and is not named", name));
   }
   const std::vector<std::string> variants = carom_variant_names();
-  if (std::find(variants.begin(), variants.end(), name) != variants.end())
+  if (std::find(variants.begin(), variants.end(), name) != variants.end()) {
     return carom_source(name, threads_);
+  }
   for (const MissingEngine& engine : missing_) {
     if (engine.name == name) {
       throw InputError(fmt::format("engine {} is not built: {} is not installed", name, engine.package));

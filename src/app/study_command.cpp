@@ -99,11 +99,6 @@ class Kept {
   Clock::time_point next_;
 };
 
-bool is_same(const Machine& a, const Machine& b) {
-  return a.cpu == b.cpu && a.cores == b.cores && a.compiler == b.compiler && a.build == b.build &&
-         a.flags == b.flags;
-}
-
 std::string words_of(const StudyLimits& limits) {
   return fmt::format("--timeout {:g} --memory {:g} --repeats {} --budget {:g}", limits.timeout_s,
                      limits.memory_mib, limits.repeats, limits.budget_s);
@@ -114,18 +109,15 @@ std::string words_of(const StudyLimits& limits) {
 Study taken_up(const Study& study, const std::string& file) {
   if (file.empty() || !std::filesystem::exists(file)) return {};
   Study before = parse_study(read_file(file), file);
-  if (before.version != study.version || !is_same(before.machine, study.machine)) {
+  if (before.version != study.version || before.machine != study.machine) {
     throw InputError(
         fmt::format("{}: a study of Carom {} on {} ({}, {} {}); allowed: one of this program on this machine",
                     file, before.version, before.machine.cpu, before.machine.compiler, before.machine.build,
                     before.machine.flags));
   }
-  const StudyLimits& was = before.limits;
-  const StudyLimits& is = study.limits;
-  if (was.timeout_s != is.timeout_s || was.memory_mib != is.memory_mib || was.repeats != is.repeats ||
-      was.budget_s != is.budget_s) {
-    throw InputError(
-        fmt::format("{}: a study with {}, found {}; allowed: the same", file, words_of(was), words_of(is)));
+  if (before.limits != study.limits) {
+    throw InputError(fmt::format("{}: a study with {}, found {}; allowed: the same", file,
+                                 words_of(before.limits), words_of(study.limits)));
   }
   return before;
 }
@@ -143,9 +135,8 @@ std::vector<StudyGrowth> taken_up(const Study& before, const std::vector<GasKind
   std::vector<StudyGrowth> growths;
   std::copy_if(before.growths.begin(), before.growths.end(), std::back_inserter(growths),
                [&](const StudyGrowth& growth) {
-                 return std::any_of(gases.begin(), gases.end(), [&](const GasKind& gas) {
-                   return gas.dimension == growth.dimension && gas.packing == growth.packing;
-                 });
+                 return std::any_of(gases.begin(), gases.end(),
+                                    [&](const GasKind& gas) { return is_of(growth, gas); });
                });
   return growths;
 }

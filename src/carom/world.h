@@ -166,8 +166,9 @@ struct World {
     Column<double> spare;
     position.reorder(order, spare, threads);
     velocity.reorder(order, spare, threads);
-    for (auto* column : {&radius, &inverse_mass})
+    for (auto* column : {&radius, &inverse_mass}) {
       VectorColumn<Dim>::reordered(*column, order, spare, threads);
+    }
     if (spins()) {
       spin.reorder(order, spare, threads);
       VectorColumn<Dim>::reordered(inverse_inertia, order, spare, threads);

@@ -20,6 +20,8 @@ struct Machine {
   std::string compiler;
   std::string build;       ///< CMake's build type
   std::string flags = {};  ///< of the compiler, beside those that every build has
+
+  bool operator==(const Machine&) const = default;
 };
 
 /// A reference engine that this build of the program lacks.

@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include "trajectory/cpu_time.h"
+
 namespace carom {
 
 /// What a part of a study may take in CPU time, of this program and of all the processes that it has waited
@@ -15,13 +17,11 @@ class CpuBudget {
 
  private:
   static double used_s() {
-    double sum_s = 0.0;
-    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-      rusage usage{};
-      getrusage(who, &usage);
-      for (const timeval& each : {usage.ru_utime, usage.ru_stime}) {
-        sum_s += static_cast<double>(each.tv_sec) + 1e-6 * static_cast<double>(each.tv_usec);
-      }
+    rusage children{};
+    getrusage(RUSAGE_CHILDREN, &children);
+    double sum_s = cpu_now();
+    for (const timeval& each : {children.ru_utime, children.ru_stime}) {
+      sum_s += static_cast<double>(each.tv_sec) + 1e-6 * static_cast<double>(each.tv_usec);
     }
     return sum_s;
   }

@@ -30,8 +30,8 @@ Foresight foresee(const std::vector<StudyPoint>& points, std::size_t index) {
   bool by_itself = false;
   for (const StudyPoint& other : points) {
     const bool same = other.setting == point.setting;
-    if (other.engine != point.engine || !other.status || other.steps_per_frame > point.steps_per_frame)
-      continue;
+    const bool tells = other.engine == point.engine && other.status;
+    if (!tells || other.steps_per_frame > point.steps_per_frame) continue;
     if (!same && (!other.setting.empty() || by_itself)) continue;
     if (same && *other.status == RunStatus::timeout) result.hopeless = true;
     if (other.recorded_cpu_s <= 0.0) continue;

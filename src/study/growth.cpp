@@ -64,8 +64,7 @@ bool is_foreseen_too_long(const GrowthPoint* before, double limit_s, GrowthPoint
 
 StudyGrowth& growth_in(std::vector<StudyGrowth>& all, const GasKind& kind, const std::string& engine) {
   for (StudyGrowth& growth : all) {
-    const bool same = growth.dimension == kind.dimension && growth.packing == kind.packing;
-    if (same && growth.engine == engine) return growth;
+    if (is_of(growth, kind) && growth.engine == engine) return growth;
   }
   StudyGrowth& growth = all.emplace_back();
   growth.dimension = kind.dimension;

@@ -25,6 +25,11 @@ struct GasKind {
   double packing = 0.1;
 };
 
+/// Whether it was measured with this kind of gas.
+inline bool is_of(const StudyGrowth& growth, const GasKind& kind) {
+  return growth.dimension == kind.dimension && growth.packing == kind.packing;
+}
+
 /// The kinds of gas among the scenes of a study, each dimension once, with the packing of the first.
 std::vector<GasKind> gas_kinds(const std::vector<ScenarioPtr>& scenes);
 

@@ -97,6 +97,8 @@ struct StudyLimits {
   double memory_mib = 4096.0;
   int repeats = 5;         ///< timed runs of each setting
   double budget_s = 30.0;  ///< CPU time of one scene, beside that of its truth, and of one kind of gas
+
+  bool operator==(const StudyLimits&) const = default;
 };
 
 struct Study {

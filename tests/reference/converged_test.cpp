@@ -17,6 +17,7 @@
 #include "scenario/catalog.h"
 #include "scenario/parse.h"
 #include "tests/support/numbers.h"
+#include "tests/support/scenes.h"
 
 namespace carom::test {
 namespace {
@@ -73,12 +74,6 @@ Scenario scene(int dimension, double duration_s, std::vector<Ball> balls = {}) {
 
 Ball ball(const Vec3& position, const Vec3& velocity = Vec3::Zero(), double mass = 1.0, double radius = 0.1) {
   return {.mass = mass, .radius = radius, .position = position, .velocity = velocity};
-}
-
-Vec3 random_vector(Random& random, int dimension, double size) {
-  Vec3 v = Vec3::Zero();
-  for (int axis = 0; axis < dimension; ++axis) v[axis] = random.uniform(-size, size);
-  return v;
 }
 
 void add_box(Scenario& s, double half_m) {

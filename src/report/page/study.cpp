@@ -167,8 +167,8 @@ void add_growth(Node parent, const Study& study, const Legend& legend) {
       fmt::format(
           "A gas of equal elastic balls that fill {} of their box and move a tenth of "
           "their radius in a step, for twenty steps; the median of {}. An engine that looks at all pairs "
-          "takes ten times "
-          "as long per ball for ten times the balls; one that knows who is near takes about the same. "
+          "takes ten times as long per ball for ten times the balls; one that knows who is near takes about "
+          "the same. "
           "Event-driven engines have no steps and are held against the time that the others step "
           "through.",
           packings_of(study), count_of(kGrowthRepeats, "run")));
@@ -201,8 +201,8 @@ void add_how(Node parent, const Study& study) {
           "How it was measured: Carom {} on {}, {} cores; compiler {}, build {} ({}).{} A time is the CPU "
           "time of the stepping alone, with nothing recorded, the median of {} (3 of a run that takes more "
           "than 0.1 s, fewer where the budget ended), after a warm-up, in rounds over all engines, one run "
-          "at "
-          "a time. A run was given {} s, a scene {} s beside its truth, cheap runs first; what fails, or is "
+          "at a time. A run was given {} s, a scene {} s beside its truth, cheap runs first; what fails, or "
+          "is "
           "foreseen to take longer, stands among the runs with its reason.",
           study.version, machine.cpu, machine.cores, machine.compiler, machine.build, machine.flags,
           versions_of(study), count_of(static_cast<std::size_t>(study.limits.repeats), "run"),
