@@ -63,18 +63,15 @@ AskedScene asked_scene(const LabSetup& setup, const Json& body) {
 }
 
 ScenarioPtr parsed(const LabSetup& setup, const AskedScene& asked) {
-  auto scene = std::make_shared<Scenario>(*parse_scene(asked.toml, asked.file, {{}, {}, setup.engine_names}));
+  auto scene = std::make_shared<Scenario>(
+      *parse_scene(asked.toml, asked.file, {{}, {}, setup.engine_names, setup.limits.balls}));
   scene->id = asked.id;
   return scene;
 }
 
-/// What would take longer than a person waits, or more than a page holds.
+/// What a page cannot hold. How many balls there may be, the reader is told.
 void check_limits(const LabLimits& limits, const Scenario& scene) {
   const std::size_t balls = numbered_balls(scene);
-  if (balls > limits.balls) {
-    throw InputError(fmt::format("{}: {} balls, allowed in the lab: at most {}; carom run takes them",
-                                 scene.file, balls, limits.balls));
-  }
   const auto frames = static_cast<std::size_t>(scene.frames) + 1;
   if (frames > limits.states / balls) {
     throw InputError(

@@ -195,10 +195,29 @@ Generator read_generator(Reader& reader, const Scenario& scene, const SceneOptio
   return g;
 }
 
+/// @throws InputError at the key, where `more` balls beside `before` others are more than the options allow.
+void check_count(const Reader& reader, std::string_view key, std::size_t before, std::size_t more,
+                 const SceneOptions& options) {
+  if (before <= options.most_balls && more <= options.most_balls - before) return;
+  reader.fail(key, fmt::format("found {} {} beside {} others, allowed: at most {} balls in all", more,
+                               more == 1 ? "ball" : "balls", before, options.most_balls));
+}
+
+/// All tables are read before the first generator places a ball: what is refused costs no placement.
 void read_balls(Reader& root, Scenario& scene, const SceneOptions& options) {
-  for (Reader& reader : root.tables("ball")) scene.balls.push_back(read_ball(reader, scene));
+  for (Reader& reader : root.tables("ball")) {
+    check_count(reader, "", scene.balls.size(), 1, options);
+    scene.balls.push_back(read_ball(reader, scene));
+  }
+  std::vector<std::pair<Generator, Reader>> generators;
+  std::size_t count = scene.balls.size();
   for (Reader& reader : root.tables("balls")) {
-    const Generator generator = read_generator(reader, scene, options);
+    Generator generator = read_generator(reader, scene, options);
+    check_count(reader, "count", count, generator.count, options);
+    count += generator.count;
+    generators.emplace_back(std::move(generator), reader);
+  }
+  for (const auto& [generator, reader] : generators) {
     try {
       std::vector<Ball> made = generate(generator, scene);
       if (scene.balls.empty()) {
@@ -268,12 +287,15 @@ void check_grown(const Reader& reader, const Scenario& scene, const Ball& before
 }
 
 /// Events in the order in which they happen, each about a ball that is there then.
-void read_events(Reader& root, Scenario& scene) {
+void read_events(Reader& root, Scenario& scene, const SceneOptions& options) {
   std::vector<Reader> readers = root.tables("event");
   if (readers.empty()) return;  // and no cast of all balls
   std::size_t numbers = scene.balls.size();
-  for (Reader reader : readers)  // a copy: what a reader was asked for, it names in errors
-    numbers += reader.has("add_ball") ? 1 : 0;
+  for (Reader reader : readers) {  // a copy: what a reader was asked for, it names in errors
+    if (!reader.has("add_ball")) continue;
+    check_count(reader, "add_ball", numbers, 1, options);
+    ++numbers;
+  }
   std::vector<std::pair<Event, Reader>> read;
   for (Reader& reader : readers) {
     Event event = read_event(reader, scene, numbers);
@@ -355,7 +377,7 @@ void read_scene(Reader& root, const SceneOptions& options, Scenario& scene) {
   read_contacts(root, scene);
   read_solids(root, scene);
   read_balls(root, scene, options);
-  read_events(root, scene);
+  read_events(root, scene, options);
   if (auto truth = root.table("truth")) scene.truth = read_truth(*truth);
   if (auto symmetry = root.table("symmetry")) scene.symmetries = read_symmetries(*symmetry);
   if (auto gate = root.table("gate")) scene.gate = read_gate(*gate, options.engines);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,11 +13,13 @@
 
 namespace carom {
 
-/// What the command line changes in a scene, and what it knows that a scene may name.
+/// What the command line changes in a scene, what it knows that a scene may name, and what it refuses.
 struct SceneOptions {
   std::optional<double> step_s;       ///< instead of `step`
   std::optional<std::uint64_t> seed;  ///< instead of the seed of every generator
   std::vector<std::string> engines;   ///< names allowed in [gate.<engine>]; none given: any name
+  /// Of all tables together, and those that events add; more are refused before any is placed.
+  std::size_t most_balls = std::numeric_limits<std::size_t>::max();
 };
 
 /// Reads a scene from TOML text. `file` is named in errors.

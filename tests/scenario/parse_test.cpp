@@ -413,6 +413,37 @@ TEST(Parse, Options_ReplaceStepAndSeed) {
   EXPECT_NE(gas_with_seed(8), gas_with_seed(7));
 }
 
+// Ten million balls that do not fit: placing them would say so, and take its time; their number is known
+// first.
+TEST(Parse, MoreBallsThanTheReaderTakes_AreRefusedBeforeOneIsPlaced) {
+  const std::string far_ball = "[[ball]]\nmass = 1\nradius = 0.1\nposition = [5, 5]\n";
+  const std::string box = kMinimal + "[box]\nmin = [-4, -4]\nmax = [9, 9]\n" + far_ball;
+  const auto lattice = [](const std::string& count) {
+    return "[[balls]]\nkind = \"lattice\"\nradius = 0.1\nmass = 1\nposition = [1, 6]\ngap = 0.1\ncount = " +
+           count + "\n";
+  };
+  const auto refused = [](const std::string& text) -> std::string {
+    try {
+      parse_scene(text, "scene.toml", {{}, {}, {}, 12});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(parse_scene(box + lattice("10"), "scene.toml", {{}, {}, {}, 12})->balls.size(), 12U);
+  EXPECT_THAT(refused(box + lattice("11")),
+              HasSubstr("balls[0].count: found 11 balls beside 2 others, allowed: at most 12 balls in all"));
+  EXPECT_THAT(refused(box + lattice("9") + lattice("10000000")),
+              HasSubstr("balls[1].count: found 10000000 balls beside 11 others, allowed: at most 12"));
+  const std::string added =
+      "[[event]]\ntime = 0.5\nadd_ball = { mass = 1.0, radius = 0.1, position = [8, 8] }\n";
+  EXPECT_THAT(refused(box + lattice("9") + added + added),
+              HasSubstr("event[1].add_ball: found 1 ball beside 12 others"));
+  std::string one_by_one = kMinimal;
+  for (int i = 0; i < 12; ++i) one_by_one += far_ball;
+  EXPECT_THAT(refused(one_by_one), HasSubstr("ball[12]: found 1 ball beside 12 others"));
+}
+
 TEST(Parse, EnginesOfTheGate_AreAnyWhenNoneAreKnown) {
   const std::string text = kMinimal + "[gate.\"my-engine:odd\"]\nenergy = 1\n";
   EXPECT_EQ(parse_scene(text, "scene.toml")->gate.per_engine.count("my-engine:odd"), 1U);
