@@ -5,6 +5,7 @@ import { spawn } from "node:child_process";
 import test, { after, before } from "node:test";
 
 import { openBrowser } from "./browser.mjs";
+import { tabTo, told, walk } from "./keyboard.mjs";
 
 let server;
 let address;
@@ -42,9 +43,10 @@ async function settled() {
 const lab = (read) => page.evaluate(`(() => { const lab = document.getElementById("lab").caromLab; return (${read})(lab); })()`);
 const error = () => page.locator("main > .lab-error").innerText();
 
-async function openMode(id) {
+/** Waits until what was done has opened a scene. */
+async function opened(id, act) {
   await lab("(lab) => { globalThis.viewerBefore = lab.viewer; }");
-  await page.locator(`.lab-mode[data-id="${id}"]`).click();
+  await act();
   await page.waitForFunction((wanted) => {
     const { caromLab } = document.getElementById("lab");
     return caromLab.viewer?.stage && caromLab.viewer !== globalThis.viewerBefore && caromLab.viewer.playback.scene.id === wanted;
@@ -52,14 +54,101 @@ async function openMode(id) {
   await settled();
 }
 
-test("Lab_OpensEveryModeOfTheCourse", async () => {
+const openMode = (id) => opened(id, () => page.locator(`.lab-mode[data-id="${id}"]`).click());
+
+/** How often a screen reader is told something while the page runs for a while, and what. */
+const announcedIn = (selector, ms) => page.evaluate(async ([where, wait]) => {
+  const texts = [];
+  const watch = new MutationObserver(() => texts.push({ text: document.querySelector(where).textContent, at: performance.now() }));
+  watch.observe(document.querySelector(where), { childList: true, characterData: true, subtree: true });
+  await new Promise((done) => setTimeout(done, wait));
+  watch.disconnect();
+  return texts;
+}, [selector, ms]);
+
+test("Lab_OpensEveryModeOfTheCourse_ByKeyboard", async () => {
   const ids = await page.locator(".lab-mode").evaluateAll((all) => all.map((each) => each.dataset.id));
   assert.ok(ids.length >= 9, ids.join());
+  await page.locator(".lab-skip").focus();
   for (const id of ids) {
-    await openMode(id);
+    await tabTo(page, `.lab-mode[data-id="${id}"]`);
+    await opened(id, () => page.keyboard.press("Enter"));
     assert.equal(await error(), "", id);
     assert.equal(await page.locator(".cv-mode > p").count(), 3, id);
+    assert.equal(await page.evaluate(() => document.activeElement.dataset.id), id);
+    await page.waitForFunction((title) => document.querySelector(".lab-said").textContent.startsWith(`${title}. `),
+      await page.locator(`.lab-mode[data-id="${id}"]`).innerText());
   }
+});
+
+test("Lab_IsWalkedByTab_ThereAndBack_WithTheFocusInSight", async () => {
+  await openMode("course/brute-force");
+  await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.show(); }");
+  await page.locator(".lab-ball").fill("1");
+  await page.locator(".lab-ball").press("Enter");
+  await page.evaluate(() => document.querySelectorAll("details").forEach((box) => { box.open = true; }));
+  const { there, forth, back, unseen } = await walk(page, ".lab-skip");
+  assert.ok(there.length > 55, `${there.length}`);
+  assert.deepEqual(forth, there.filter((name) => forth.includes(name)), "in the order of the page");
+  assert.deepEqual(there.filter((name) => !forth.includes(name)), []);
+  assert.deepEqual([...back].reverse().slice(-there.length), there);
+  assert.deepEqual(unseen, []);
+  await page.evaluate(() => document.querySelectorAll(".lab-box").forEach((box) => { box.open = false; }));
+});
+
+test("Lab_TellsAScreenReaderEveryControl_AndWhatHappens", async () => {
+  const roles = ["RootWebArea", "button", "combobox", "option", "slider", "spinbutton", "radio", "textbox", "checkbox", "region",
+    "DisclosureTriangle", "application", "dialog"];
+  for (const language of ["de", "en"]) {
+    await page.locator(".cv-language").selectOption(language);
+    assert.equal(await page.evaluate(() => document.documentElement.lang), language);
+    await page.locator(".cv-help-button").click();
+    const inside = await told(page);
+    assert.ok(inside.some(({ role, name }) => role === "checkbox" && name), language);
+    await page.keyboard.press("Escape");
+    for (const { role, name } of [...inside, ...await told(page)]) assert.ok(name.trim() && roles.includes(role), `${language}: ${role} "${name}"`);
+  }
+  // Sixty balls meet many times a second; somebody who listens is told now and then.
+  await page.locator("canvas.cv-canvas").focus();
+  await page.keyboard.press("Space");
+  const texts = await announcedIn(".cv-live", 4000);
+  const impacts = texts.filter(({ text }) => /^[\d.]+ s: ball/.test(text));
+  assert.ok(impacts.length >= 1 && impacts.length <= 2, JSON.stringify(texts));
+  texts.slice(1).forEach(({ at }, k) => assert.ok(at - texts[k].at > 2000, JSON.stringify(texts)));
+  await page.keyboard.press("Space");
+  assert.match(await page.locator(".cv-live").innerText(), /^Paused at [\d.]+ s$/);
+  await page.keyboard.press("v");
+  assert.equal(await page.locator(".cv-live").innerText(), "Velocities: on");
+});
+
+test("Lab_TakesAnEngineALawAndAHeavierBall_ByKeyboardAlone", async () => {
+  await openMode("course/impulse");
+  await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.goTo(1); }");
+  await tabTo(page, ".lab-ball");
+  await page.keyboard.type("1");
+  await tabTo(page, ".lab-heavier");
+  await opened("course/impulse", () => page.keyboard.press("Enter"));
+  assert.match(await page.locator(".lab-toml").inputValue(), /ball = 1\nscale_mass = 1\.1/);
+  await page.waitForFunction(() => document.querySelector(".lab-said").textContent.startsWith("Ball 1: "));
+  assert.equal(await page.evaluate(() => document.activeElement.className), "lab-heavier");
+  await tabTo(page, ".cv-engine-b");
+  const next = await page.locator(".cv-engine-b option").nth(1).getAttribute("value");
+  await opened("course/impulse", () => page.keyboard.press("ArrowDown"));
+  await page.waitForFunction((names) => [...document.querySelectorAll(".cv-name")].map((name) => name.textContent).join() === names, `carom,${next}`);
+  assert.equal(await page.evaluate(() => document.activeElement.className), "cv-engine-b");
+  await tabTo(page, ".cv-csv");
+  const [csv] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Enter")]);
+  assert.equal(csv.suggestedFilename(), "course-impulse.csv");
+  await tabTo(page, ".lab-law summary");
+  await page.keyboard.press("Space");
+  await tabTo(page, ".lab-normal");
+  await page.keyboard.press("Control+a");
+  await page.keyboard.type("-2 * m * vn");
+  await opened("course/impulse", () => page.keyboard.press("Enter"));
+  await page.locator(".lab-rules tbody tr").first().waitFor();
+  await tabTo(page, ".lab-untry");
+  await opened("course/impulse", () => page.keyboard.press("Enter"));
+  await page.locator(".lab-law").evaluate((box) => { box.open = false; });
 });
 
 test("Lab_PutsAnotherEngineBesideTheFirst", async () => {

@@ -2,20 +2,17 @@
 
 import "./lab.css";
 
-import { button, make } from "../viewer/dom.js";
+import { button, keepFocus, make } from "../viewer/dom.js";
 import { Viewer } from "../viewer/viewer.js";
 import { language } from "../viewer/words/words.js";
 import { api } from "./api.js";
 import { LawBox, lawToml } from "./law_box.js";
+import { Menu, titleOf } from "./menu.js";
 import { SceneBox } from "./scene_box.js";
 import { fragmentOf, sharedIn } from "./share.js";
+import { kChanges, Tools } from "./tools.js";
 
-const kHeavier = { scale_mass: 1.1, scale_radius: 1.05 };
-const kLighter = { scale_mass: 0.9, scale_radius: 0.95 };
-const kTools = ["choose", "heavier", "lighter"];
-// The modes as the course comes to them; others of the course follow.
-const kOrder = ["normal-mode", "brute-force", "quadtree", "octree", "impulse", "velocity-arrows", "effet", "thin-slab", "quantum-barrier"]
-  .map((name) => `course/${name}`);
+const kGoing_ms = 300; // between two keys of somebody who goes through a menu
 const kFirstTool = { "course/impulse": "heavier" };
 const kFirstEngines = { "course/thin-slab": ["carom:step", "carom"] };
 const kFirstToggles = {
@@ -30,7 +27,8 @@ class Lab {
     this.engines = [];
     this.chosen = ["carom", ""];
     this.history = [];
-    this.tool = "choose";
+    this.menu = new Menu((id) => this.openMode(id));
+    this.tools = new Tools({ choose: (ball) => this.choseBall(ball), change: (action) => this.change(action) });
     this.lawBox = new LawBox((law) => this.tryLaw(law));
     this.sceneBox = new SceneBox({ run: (toml) => this.runText(toml), undo: () => this.undo(), share: () => this.share() });
     this.build();
@@ -40,14 +38,15 @@ class Lab {
   build() {
     this.title = make("h1", {}, "Carom lab");
     this.lead = make("p", { className: "cv-note" });
-    this.menu = make("nav", { className: "lab-menu" });
-    this.error = make("p", { className: "lab-error", role: "alert" });
+    this.skip = button("lab-skip", () => this.viewer?.stage?.canvas.focus());
+    this.error = make("p", { className: "lab-error", role: "alert", lang: "en" });
     this.busy = make("p", { className: "lab-busy", role: "status", "aria-live": "polite" });
+    // Heard and not seen: what a look at the page tells.
+    this.said = make("p", { className: "lab-said", role: "status", "aria-live": "polite" });
     this.sceneTitle = make("h2");
-    this.tools = make("fieldset", { className: "lab-tools" });
     this.viewerHost = make("div");
-    this.host.replaceChildren(make("header", {}, this.title, this.lead), make("div", { className: "lab-body" }, this.menu,
-      make("main", {}, this.sceneTitle, this.error, this.busy, this.tools, this.viewerHost, this.lawBox.element, this.sceneBox.element)));
+    this.host.replaceChildren(this.skip, make("header", {}, this.title, this.lead), make("div", { className: "lab-body" }, this.menu.element,
+      make("main", {}, this.sceneTitle, this.error, this.busy, this.said, this.tools.element, this.viewerHost, this.lawBox.element, this.sceneBox.element)));
   }
 
   async start() {
@@ -59,10 +58,11 @@ class Lab {
       return;
     }
     this.engines = this.engines.map(({ label }) => label);
+    this.menu.fill(this.modes);
     this.say();
     const shared = await sharedIn(location.hash);
     if (shared) await this.openShared(shared);
-    else await this.openMode(decodeURIComponent(/^#m=(.+)$/.exec(location.hash)?.[1] ?? "") || (this.modes.find(({ id }) => id === kOrder[0]) ?? this.modes[0])?.id);
+    else await this.openMode(decodeURIComponent(/^#m=(.+)$/.exec(location.hash)?.[1] ?? "") || Menu.first(this.modes)?.id);
     addEventListener("hashchange", async () => {
       const next = await sharedIn(location.hash);
       if (next) this.openShared(next);
@@ -73,17 +73,20 @@ class Lab {
 
   async openMode(id) {
     if (!id) return;
+    this.wanted = id;
     await this.guarded(async () => {
+      if (this.wanted !== id) return; // somebody goes through the list, and is farther by now
       const { toml } = await api.scene(id);
       this.id = id;
       this.history = [];
       this.law = null;
       this.viewer?.close();
       this.viewer = null;
-      this.tool = kFirstTool[id] ?? "choose";
+      this.tools.tool = kFirstTool[id] ?? "choose";
       this.chooseFirst(kFirstEngines[id]);
       history.replaceState(null, "", `#m=${encodeURIComponent(id)}`);
       await this.run(toml, { toggles: kFirstToggles[id], autoplay: true });
+      this.tell(this.sceneTitle.textContent, language.words.modes[id]?.see);
     });
   }
 
@@ -105,6 +108,7 @@ class Lab {
       this.law = law ?? null;
       if (law) this.lawBox.set(law);
       await this.run(toml, {});
+      this.tell(this.sceneTitle.textContent);
     });
   }
 
@@ -129,6 +133,7 @@ class Lab {
     this.toml = toml;
     this.sceneBox.text.value = toml;
     const kept = this.viewer?.state() ?? {};
+    const giveFocusBack = keepFocus(this.viewerHost);
     this.viewer?.close();
     const own = playback.runs.find((run) => run.engine === kLawEngine)?.label;
     const [first, second] = this.chosen;
@@ -141,6 +146,7 @@ class Lab {
     });
     host.caromViewer = this.viewer;
     this.say();
+    giveFocusBack();
     const failed = playback.runs.filter((run) => labels.includes(run.label) && run.status !== "ok");
     this.error.textContent = failed.map((run) => language.words.notThere(language.words.label(run.label), run.reason || run.status)).join("\n");
   }
@@ -149,27 +155,45 @@ class Lab {
     return [...this.engines, ...(own ? [own] : []), kTruth];
   }
 
+  /** Who goes through a menu by keys comes by others first: only where they stay is run. */
   chooseEngines(labels) {
     this.chosen = labels;
     this.before = null;
-    return this.guarded(() => this.run(this.toml, { engines: labels }));
+    clearTimeout(this.choosing);
+    this.choosing = setTimeout(() => this.runChosen(labels), kGoing_ms);
+  }
+
+  runChosen(labels) {
+    return this.guarded(async () => {
+      await this.run(this.toml, { engines: labels });
+      this.tell(this.viewer.labels.filter(Boolean).map((label) => language.words.label(label)).join(", "));
+    });
   }
 
   // --- what a person does to a ball
 
+  choseBall(ball) {
+    if (!this.viewer) return;
+    this.viewer.chosen = ball ?? -1;
+    this.viewer.show();
+  }
+
   clickedBall({ ball, button: pressed, time }) {
-    this.ball = ball;
-    this.sayTools();
-    const lighter = this.tool === "lighter" || pressed === 2;
-    if (this.tool === "choose") return;
-    this.change(lighter ? kLighter : kHeavier, time);
+    this.tools.ball = ball;
+    this.tools.show();
+    const lighter = this.tools.tool === "lighter" || pressed === 2;
+    if (this.tools.tool === "choose") return;
+    this.change(lighter ? kChanges.lighter : kChanges.heavier, time);
   }
 
   change(action, time = this.viewer.clock.time) {
+    const { ball } = this.tools;
     return this.guarded(async () => {
-      const { toml } = await api.withEvent(this.toml, { time, ball: this.ball, ...action });
+      const { toml } = await api.withEvent(this.toml, { time, ball, ...action });
       await this.run(toml, { time }, true);
-      this.viewer.chosen = this.ball;
+      this.viewer.chosen = ball;
+      const { masses, radii } = this.viewer.bodiesAfter(time);
+      this.tell(language.words.lab.changed(ball, language.number(masses[ball]), language.number(radii[ball])));
     });
   }
 
@@ -211,81 +235,32 @@ class Lab {
 
   // --- words
 
+  /** Tells by voice what is to be seen at once. */
+  tell(...parts) {
+    this.said.textContent = parts.filter(Boolean).join(". ");
+  }
+
   say() {
     const { lab } = language.words;
     document.documentElement.lang = language.id;
     document.title = lab.title;
     this.title.textContent = lab.title;
     this.lead.textContent = lab.lead;
+    this.skip.textContent = lab.skip;
     this.lawBox.say();
     this.sceneBox.say();
-    this.sayMenu();
-    this.sayTools();
+    this.menu.say(this.wanted ?? this.id);
+    this.tools.say();
+    this.tools.show(this.viewer?.playback.balls.shown ?? 0);
     const mode = this.modes.find(({ id }) => id === this.id);
-    this.sceneTitle.textContent = mode ? titleOf(mode) : this.viewer?.playback.scene.title ?? "";
-  }
-
-  sayMenu() {
-    const { lab } = language.words;
-    const place = ({ id }) => (kOrder.includes(id) ? kOrder.indexOf(id) : kOrder.length);
-    const course = this.modes.filter(({ id }) => id.startsWith("course/")).sort((a, b) => place(a) - place(b));
-    const others = this.modes.filter(({ id }) => !id.startsWith("course/"));
-    const entries = course.map((mode) => {
-      const made = button("lab-mode", () => this.openMode(mode.id));
-      made.textContent = titleOf(mode);
-      made.dataset.id = mode.id;
-      if (mode.id === this.id) made.setAttribute("aria-current", "true");
-      return make("li", {}, made);
-    });
-    const select = make("select", { className: "lab-scenes", "aria-label": lab.otherScenes });
-    const groups = Map.groupBy ? Map.groupBy(others, ({ id }) => id.split("/")[0]) : grouped(others);
-    select.append(make("option", { value: "" }, lab.otherScenes), ...[...groups].map(([group, modes]) =>
-      make("optgroup", { label: group }, ...modes.map((mode) => make("option", { value: mode.id }, titleOf(mode))))));
-    select.value = others.some(({ id }) => id === this.id) ? this.id : "";
-    select.addEventListener("change", () => this.openMode(select.value));
-    this.menu.setAttribute("aria-label", lab.modes);
-    this.menu.replaceChildren(make("h2", {}, lab.modes), make("ul", {}, ...entries), ...(others.length > 0 ? [select] : []));
-  }
-
-  sayTools() {
-    const { lab } = language.words;
-    const tools = kTools.map((tool) => {
-      const radio = make("input", { type: "radio", name: "lab-tool", value: tool, checked: tool === this.tool });
-      radio.addEventListener("change", () => { this.tool = tool; });
-      return make("label", {}, radio, ` ${lab.tools[tool]}`);
-    });
-    const changes = [["heavier", kHeavier], ["lighter", kLighter]].map(([name, action]) => {
-      const made = button(`lab-${name}`, () => this.change(action));
-      made.textContent = lab[name];
-      made.disabled = this.ball === undefined || !this.viewer;
-      return made;
-    });
-    const count = this.viewer?.playback.balls.shown ?? 0;
-    if (this.ball >= count) this.ball = undefined;
-    const ball = make("input", { type: "number", min: 0, max: Math.max(count - 1, 0), className: "lab-ball", value: this.ball ?? "" });
-    ball.addEventListener("change", () => {
-      const asked = Number(ball.value);
-      this.ball = ball.value !== "" && asked >= 0 && asked < count ? asked : undefined;
-      if (this.viewer) { this.viewer.chosen = this.ball ?? -1; this.viewer.show(); }
-      changes.forEach((made) => { made.disabled = this.ball === undefined; });
-    });
-    this.tools.replaceChildren(make("legend", {}, lab.click), ...tools, make("label", {}, `${lab.ball} `, ball), ...changes);
+    const { text, lang } = titleOf(mode ?? { title: this.viewer?.playback.scene.title ?? "" });
+    this.sceneTitle.textContent = text;
+    this.sceneTitle.lang = lang;
   }
 }
 
 const kLawEngine = "carom:law";
 const kTruth = "truth";
-
-function grouped(modes) {
-  const groups = new Map();
-  for (const mode of modes) {
-    const group = mode.id.split("/")[0];
-    groups.set(group, [...(groups.get(group) ?? []), mode]);
-  }
-  return groups;
-}
-
-const titleOf = ({ id, title }) => language.words.modes[id]?.title ?? title ?? id;
 
 const lab = new Lab(document.getElementById("lab"));
 document.getElementById("lab").caromLab = lab;

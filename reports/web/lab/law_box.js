@@ -34,7 +34,7 @@ export class LawBox {
     this.try = button("lab-try", () => this.run());
     this.remove = button("lab-untry", () => { this.result.replaceChildren(); this.tried(null); });
     this.normal.addEventListener("keydown", (event) => { if (event.key === "Enter") this.run(); });
-    this.error = make("p", { className: "lab-error", role: "alert" });
+    this.error = make("p", { className: "lab-error", role: "alert", lang: "en" });
     this.result = make("div", { className: "lab-rules" });
     this.summary = make("summary");
     this.texts = { example: make("span"), normal: make("span"), let: make("span"), names: make("p", { className: "cv-note" }) };
@@ -93,7 +93,7 @@ export class LawBox {
       make("td", {}, language.number(rule.right_worst ?? Infinity, 3))));
     const heads = [lab.rule, "", lab.brokenShare, lab.worst, lab.rightWorst];
     const note = make("p", { className: "cv-note" }, lab.pairs(report.pairs) + (report.not_finite > 0 ? ` ${lab.notFinite(report.not_finite)}` : ""));
-    this.result.replaceChildren(make("div", { className: "cv-scroll-x" }, make("table", {},
+    this.result.replaceChildren(make("div", { className: "cv-scroll-x", tabIndex: 0, role: "region", "aria-label": lab.lawTitle }, make("table", {},
       make("thead", {}, make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text)))), make("tbody", {}, ...rows))), note);
   }
 }

@@ -113,6 +113,7 @@ export class Controls {
     this.csv.textContent = words.exportCsv;
     this.png.textContent = words.exportPng;
     for (const made of [this.csv, this.png]) made.title = `${words.export}: ${made.textContent}`;
+    this.engines[1].setAttribute("aria-label", words.engineBesides);
     this.timeline.slider.setAttribute("aria-label", words.timeline);
     const space = viewer.playback.scene.dimension === 3;
     const { canvas, message } = viewer.stage ?? {};
@@ -151,7 +152,10 @@ export class Controls {
     const shut = button("cv-close", () => this.dialog.close());
     shut.textContent = words.close;
     this.dialog.setAttribute("aria-label", words.keysTitle);
-    this.dialog.replaceChildren(make("h3", {}, words.keysTitle), make("dl", {}, ...rows), shut);
+    const everywhere = make("input", { type: "checkbox", className: "cv-keys-everywhere", checked: keysEverywhere() });
+    everywhere.addEventListener("change", () => setKeysEverywhere(everywhere.checked));
+    this.dialog.replaceChildren(make("h3", {}, words.keysTitle), make("dl", {}, ...rows),
+      make("p", {}, make("label", {}, everywhere, ` ${words.keysEverywhere}`)), shut);
   }
 
   showHelp() {
@@ -173,17 +177,27 @@ export class Controls {
     this.layout.disabled = viewer.motions.length < 2;
     this.colouring.value = viewer.colouring;
     this.colouring.querySelector("[value=parted]").disabled = viewer.motions.length < 2;
-    const dimension = viewer.playback.scene.dimension;
     for (const [name, key] of kSwitches) {
       const made = this.toggles[name];
-      const label = name === "tree" ? words.toggles.tree[dimension - 2] : words.toggles[name];
       const more = name === "spin" ? `: ${words.spinStates[toggles.spin]}` : "";
-      made.textContent = `${label}${more}${key ? ` (${key})` : ""}`;
+      made.textContent = `${this.nameOfToggle(name)}${more}${key ? ` (${key})` : ""}`;
       made.title = words.hints[name];
       made.setAttribute("aria-pressed", String(name === "spin" ? toggles.spin !== "off" : toggles[name]));
     }
     this.timeline.draw(viewer.motions, viewer.theme);
     this.showCounts();
+  }
+
+  nameOfToggle(name) {
+    const { toggles } = language.words;
+    return name === "tree" ? toggles.tree[this.viewer.playback.scene.dimension - 2] : toggles[name];
+  }
+
+  /** What is said when a switch was turned. */
+  toldToggle(name) {
+    const { words } = language;
+    const state = this.viewer.toggles[name];
+    return `${this.nameOfToggle(name)}: ${name === "spin" ? words.spinStates[state] : words.onOff[state ? 0 : 1]}`;
   }
 
   showTime() {
@@ -228,7 +242,7 @@ export class Controls {
     if (at.matches?.("textarea, select, input, [contenteditable]") && !slider) return;
     if (event.key === " " && at.matches?.("button, summary, a")) return;
     if (event.key.startsWith("Arrow") && at.matches?.(".cv-scroll, [role=tab]")) return;
-    if (!viewer.stage) return;
+    if (!viewer.stage || !(keysEverywhere() || at === viewer.stage.canvas || this.dialog.open)) return;
     const act = this.actionOf(event);
     if (!act) return;
     event.preventDefault();
@@ -242,9 +256,12 @@ export class Controls {
     const move = (x, y) => () => (camera.flat ? camera.pan(-x, y) : camera.orbit(x, y));
     const centre = () => {
       const { toggles } = viewer;
-      if (!toggles.centre) toggles.centre = true;
-      else if (!toggles.frame) toggles.frame = true;
-      else toggles.centre = toggles.frame = false;
+      if (!toggles.centre) viewer.switch("centre");
+      else if (!toggles.frame) viewer.switch("frame");
+      else {
+        toggles.frame = false;
+        viewer.switch("centre");
+      }
     };
     const actions = {
       " ": () => viewer.toggle(), r: () => viewer.restart(), h: () => this.showHelp(), "?": () => this.showHelp(),
@@ -254,10 +271,23 @@ export class Controls {
       "+": () => camera.zoomBy(1.25), "-": () => camera.zoomBy(0.8), 0: () => camera.reset(),
       arrowleft: () => (event.shiftKey ? viewer.stepImpacts(-1) : viewer.stepFrames(-1)),
       arrowright: () => (event.shiftKey ? viewer.stepImpacts(1) : viewer.stepFrames(1)),
-      arrowup: () => viewer.clock.faster(1), arrowdown: () => viewer.clock.faster(-1),
+      arrowup: () => viewer.faster(1), arrowdown: () => viewer.faster(-1),
     };
     return actions[event.key.toLowerCase()];
   }
+}
+
+// Single keys get in the way of who steers a browser by voice, or by keys of their own: they may be kept to the picture.
+const kKeysStore = "carom-keys";
+let everywhere_here = true; // where a page has no storage
+
+function keysEverywhere() {
+  try { return (localStorage.getItem(kKeysStore) ?? "everywhere") === "everywhere"; } catch { return everywhere_here; }
+}
+
+function setKeysEverywhere(on) {
+  everywhere_here = on;
+  try { localStorage.setItem(kKeysStore, on ? "everywhere" : "picture"); } catch { /* then until the page is closed */ }
 }
 
 function name_of(made, name) {

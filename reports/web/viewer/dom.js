@@ -15,6 +15,21 @@ export function button(className, action) {
   return element;
 }
 
+/**
+ * Remembers where in `root` the keyboard is. @returns what gives the focus to the element that stands there later, where
+ * it went away with what was replaced
+ */
+export function keepFocus(root) {
+  const held = document.activeElement;
+  if (!held || held === root || !root.contains(held)) return () => {};
+  const alike = ({ tagName, className, dataset: { name } }) => [tagName, className, name].join("|");
+  const like_it = () => [...root.querySelectorAll(held.tagName)].filter((each) => alike(each) === alike(held));
+  const place = like_it().indexOf(held);
+  return () => {
+    if (document.activeElement === document.body) like_it()[place]?.focus({ preventScroll: true });
+  };
+}
+
 /** Whether the page is shown dark: as it was chosen, else as the system has it. */
 export function isDark() {
   const chosen = document.documentElement.dataset.theme;

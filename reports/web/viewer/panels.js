@@ -5,7 +5,8 @@ import { language } from "./words/words.js";
 
 /** The closable boxes beside the picture: energy, plots over time, momenta, values, and what this playback leaves out. */
 export class Panels {
-  constructor(viewer) {
+  /** @param open  names of the boxes that are open, as `open` of earlier panels told them */
+  constructor(viewer, open = ["energy", "overTime"]) {
     this.viewer = viewer;
     this.bars = new EnergyBars();
     this.overTime = new OverTime();
@@ -13,10 +14,10 @@ export class Panels {
     this.values = new Values();
     this.note = make("p", { className: "cv-note" });
     this.boxes = {
-      energy: this.box(true, this.bars.element),
-      overTime: this.box(true, this.overTime.element),
-      momenta: this.box(false, this.momenta.element),
-      values: this.box(false, this.values.element),
+      energy: this.box(open.includes("energy"), this.bars.element),
+      overTime: this.box(open.includes("overTime"), this.overTime.element),
+      momenta: this.box(open.includes("momenta"), this.momenta.element),
+      values: this.box(open.includes("values"), this.values.element),
     };
     this.about = make("div", { className: "cv-about cv-note" });
     this.element = make("div", { className: "cv-panels" }, ...Object.values(this.boxes), this.about);
@@ -26,6 +27,10 @@ export class Panels {
     const box = make("details", { open }, make("summary"), content);
     box.addEventListener("toggle", () => { this.stale = true; this.viewer.show(); });
     return box;
+  }
+
+  get open() {
+    return Object.keys(this.boxes).filter((name) => this.boxes[name].open);
   }
 
   say() {

@@ -30,11 +30,11 @@ export class Stage {
 
   take(Painter) {
     this.canvas?.remove();
-    this.canvas = make("canvas", { className: "cv-canvas", role: "img", tabIndex: 0 });
+    this.canvas = make("canvas", { className: "cv-canvas", role: "application", tabIndex: 0 });
     this.element.prepend(this.canvas);
     this.painter = Painter?.on(this.canvas) ?? null;
     if (!this.painter) {
-      const canvas = make("canvas", { className: "cv-canvas", role: "img", tabIndex: 0 });
+      const canvas = make("canvas", { className: "cv-canvas", role: "application", tabIndex: 0 });
       this.canvas.replaceWith(canvas);
       this.canvas = canvas;
       this.painter = Paint2d.on(canvas);

@@ -8,7 +8,11 @@ const kRows = 40;
 /** The numbers of every ball of the first run, how far it is from its twin in the second, and sums of each run. */
 export class Values {
   constructor() {
-    this.element = make("div", { className: "cv-values" });
+    // Who scrolls with the keyboard stands on it, and shall not be sent away by new numbers.
+    this.scroll = make("div", { className: "cv-scroll", tabIndex: 0, role: "region" });
+    this.sumsBox = make("div");
+    this.note = make("p", { className: "cv-note" });
+    this.element = make("div", { className: "cv-values" }, this.sumsBox, this.scroll, this.note);
   }
 
   show(motions, states, bodies) {
@@ -27,14 +31,10 @@ export class Values {
     const table = make("table", {},
       make("thead", {}, make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text)))),
       make("tbody", {}, ...rows));
-    const sums = this.sums(motions, states, bodies, axes.length);
-    const notes = motions[0].balls > kRows ? [make("p", { className: "cv-note" }, words.valuesMany(kRows, motions[0].balls))] : [];
-    const scroll = make("div", { className: "cv-scroll", tabIndex: 0, role: "region", "aria-label": words.values }, table);
-    const kept = this.element.querySelector(".cv-scroll")?.scrollTop ?? 0;
-    const focused = document.activeElement?.closest?.(".cv-scroll") && this.element.contains(document.activeElement);
-    this.element.replaceChildren(make("div", { className: "cv-scroll-x" }, sums), scroll, ...notes);
-    scroll.scrollTop = kept;
-    if (focused) scroll.focus({ preventScroll: true });
+    this.sumsBox.replaceChildren(this.sums(motions, states, bodies, axes.length));
+    this.scroll.setAttribute("aria-label", words.values);
+    this.scroll.replaceChildren(table);
+    this.note.textContent = motions[0].balls > kRows ? words.valuesMany(kRows, motions[0].balls) : "";
   }
 
   row(i, axes, scene, motion, states, { masses, radii }) {

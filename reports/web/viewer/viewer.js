@@ -5,7 +5,7 @@ import "uplot/dist/uPlot.min.css";
 import "./viewer.css";
 
 import { countAcross, expectedAcross } from "./barrier.js";
-import { Clock } from "./clock.js";
+import { Clock, nameOfSpeed } from "./clock.js";
 import { kThemes } from "./colours.js";
 import { Controls } from "./controls.js";
 import { distances } from "./charts.js";
@@ -31,7 +31,7 @@ export class Viewer {
    * @param json     a playback
    * @param options  engines: labels of the first and the second run; onBall({ball, button, shift, time}): a ball was clicked;
    *                 choices, onEngines([a, b]): labels that may be chosen although the playback lacks them, and who runs them;
-   *                 time, toggles, layout, speed: as an earlier viewer's state(); autoplay; global: keys of the whole page
+   *                 time, toggles, layout, speed, boxes: as an earlier viewer's state(); autoplay; global: keys of the whole page
    */
   static async mount(host, json, options = {}) {
     const viewer = new Viewer(host, await Playback.read(json), options);
@@ -60,7 +60,7 @@ export class Viewer {
     this.motions = [];
     this.states = [];
     this.controls = new Controls(this);
-    this.panels = new Panels(this);
+    this.panels = new Panels(this, options.boxes);
     this.live = make("p", { className: "cv-live", role: "status", "aria-live": "polite" });
     this.announced = 0;
     host.classList.add("carom-viewer");
@@ -123,7 +123,7 @@ export class Viewer {
   /** What another viewer needs to go on where this one is. */
   state() {
     return { time: this.clock.time, toggles: { ...this.toggles }, layout: this.layout, colouring: this.colouring,
-      speed: this.clock.speed, engines: this.labels.filter(Boolean), autoplay: this.clock.playing };
+      speed: this.clock.speed, engines: this.labels.filter(Boolean), boxes: this.panels.open, autoplay: this.clock.playing };
   }
 
   // --- what a person does
@@ -131,6 +131,8 @@ export class Viewer {
   toggle() {
     this.clock.toggle();
     this.last = null;
+    const { words } = language;
+    this.tell(this.clock.playing ? words.plays : words.paused(language.number(this.clock.time)));
     this.show();
   }
 
@@ -141,6 +143,13 @@ export class Viewer {
 
   restart() {
     this.goTo(0);
+    this.tellTime();
+  }
+
+  faster(steps) {
+    this.clock.faster(steps);
+    this.tell(`${language.words.speed}: × ${nameOfSpeed(this.clock.speed)}`);
+    this.show();
   }
 
   stepFrames(by) {
@@ -150,6 +159,7 @@ export class Viewer {
     const between = this.clock.time > times[frame] + 1e-9 * this.clock.duration;
     const next = frame + by + (by < 0 && between ? 1 : 0);
     this.goTo(times[Math.min(Math.max(next, 0), times.length - 1)]);
+    this.tellTime();
   }
 
   stepImpacts(by) {
@@ -158,7 +168,10 @@ export class Viewer {
     const little = 1e-7 * this.clock.duration;
     const found = by > 0 ? impacts.find((impact) => impact.time > this.clock.time + little)
       : impacts.findLast((impact) => impact.time < this.clock.time - little);
-    if (!found) return;
+    if (!found) {
+      this.tell(language.words.noMoreImpacts);
+      return;
+    }
     this.goTo(found.time);
     this.announce(impacts.filter((impact) => Math.abs(impact.time - found.time) <= little), true);
   }
@@ -170,11 +183,13 @@ export class Viewer {
     } else {
       this.toggles[name] = !this.toggles[name];
     }
+    this.tell(this.controls.toldToggle(name));
     this.show();
   }
 
   setLayout(layout) {
     this.layout = layout;
+    this.tell(language.words.layouts[layout]);
     this.show();
   }
 
@@ -284,6 +299,11 @@ export class Viewer {
 
   colourOfBall(ball) { return colourOf(ball, this.motions[0].balls); }
 
+  /** The masses and radii from the first frame on that shows what happened at a time. */
+  bodiesAfter(time) {
+    return bodiesAt(this.playback, time + this.clock.duration / this.playback.frames.intervals);
+  }
+
   // --- what is told
 
   /** The largest distance of a ball from its twin: now, and in all. */
@@ -321,16 +341,24 @@ export class Viewer {
     return this.motions[0].impacts.filter((impact) => impact.time > from && impact.time <= to);
   }
 
+  /** Below the picture, and to a screen reader once it is silent. */
+  tell(text) {
+    this.announced = performance.now();
+    this.live.textContent = text;
+  }
+
+  tellTime() {
+    this.tell(language.words.clock(language.number(this.clock.time), language.number(this.clock.duration)));
+  }
+
   announce(impacts, atOnce) {
     if (impacts.length === 0) return;
-    const now = performance.now();
-    if (!atOnce && now < this.announced + kAnnounce_ms) return;
-    this.announced = now;
+    if (!atOnce && performance.now() < this.announced + kAnnounce_ms) return;
     const { words } = language;
     const { time, ball, other } = impacts[0];
     const kind = other >= 0 ? "ball" : other === -1 ? "wall" : "unknown";
     const text = words.impactWith[kind](language.number(time), ball, other);
-    this.live.textContent = impacts.length > 1 ? text + words.more(impacts.length - 1) : text;
+    this.tell(impacts.length > 1 ? text + words.more(impacts.length - 1) : text);
   }
 
   /** Draws so many pictures and waits for each. @returns the mean time of one, ms */
