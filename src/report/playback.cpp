@@ -113,33 +113,99 @@ Cut cut_of(const Scenario& scenario, const std::vector<Film>& films, const Playb
   return cut;
 }
 
-/// A quantity of the balls over frames on a grid, as differences of an order that leaves little: packed
-/// integers.
+double on_grid(double value, double grid) {
+  return std::nearbyint(value / grid);
+}
+
+/// A quantity of the balls over frames on a grid, as first differences: packed integers.
 template <class Quantity>
 std::string pack_states(const Trajectory& trajectory, std::span<const std::size_t> frames, std::size_t balls,
-                        std::span<const int> axes, double grid, int order, Quantity quantity) {
+                        std::span<const int> axes, double grid, Quantity quantity) {
   std::vector<std::int32_t> differences;
   differences.reserve(frames.size() * balls * axes.size());
   for (const int axis : axes) {
     for (std::size_t i = 0; i < balls; ++i) {
-      std::uint32_t last = 0;
-      std::uint32_t last_change = 0;
+      std::int32_t last = 0;
       for (const std::size_t k : frames) {
         // A ball that is not there is packed where it was.
-        std::uint32_t now = last;
-        if (trajectory.present(k, i)) {
-          const double value = std::nearbyint(quantity(trajectory.frame(k)[i])[axis] / grid);
-          // Differences wrap around, and so does their sum.
-          now = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
-        }
-        const std::uint32_t change = now - last;
-        differences.push_back(static_cast<std::int32_t>(order == 2 ? change - last_change : change));
+        const std::int32_t now =
+            trajectory.present(k, i)
+                ? static_cast<std::int32_t>(on_grid(quantity(trajectory.frame(k)[i])[axis], grid))
+                : last;
+        differences.push_back(now - last);
         last = now;
-        last_change = change;
       }
     }
   }
   return pack_integers(differences);
+}
+
+/// Where the flight of a ball goes, from frame to frame. What is unpacked is known here too, so that
+/// roundings do not add up over frames, and a ball that flies freely leaves nothing but zeros.
+class PackedFlight {
+ public:
+  PackedFlight(std::span<const int> axes, const Grids& grids) : axes_(axes), grids_(grids) {}
+
+  /// Goes on to a ball's next frame. @param state  nothing: the ball is not there, and stays where it was
+  /// @returns for each axis by how many grids the flight misses it
+  Eigen::Array<std::int32_t, 3, 1> next(const BallState* state, double interval_s) {
+    Vec3 after = v_;
+    Vec3 wanted = x_;
+    if (state != nullptr) {
+      for (const int c : axes_) after[c] = on_grid(state->velocity[c], grids_.speed_mps) * grids_.speed_mps;
+      wanted = state->position;
+    }
+    // |x| is at most this on its grid, so three of them, x and x' and the flight, fit into 31 bits.
+    const double farthest = kLargest * grids_.position_m;
+    const Vec3 jump = after - v_;
+    int lead = axes_.front();
+    for (const int c : axes_) {
+      if (std::abs(jump[c]) > std::abs(jump[lead])) lead = c;
+    }
+    Eigen::Array<std::int32_t, 3, 1> off = {0, 0, 0};
+    const auto fly = [&](int c, double aside) {
+      x_[c] += std::clamp(0.5 * interval_s * (v_[c] + after[c]) + aside, -farthest, farthest);
+      off[c] = static_cast<std::int32_t>(on_grid(wanted[c] - x_[c], grids_.position_m));
+      x_[c] += off[c] * grids_.position_m;
+    };
+    fly(lead, 0.0);
+    // Where the velocity jumps once, at a time t of its interval h, the flight misses by (h/2 - t) times the
+    // jump.
+    const double missed = off[lead] * grids_.position_m;
+    const bool once = std::abs(missed) <= 0.5 * interval_s * std::abs(jump[lead]) + grids_.position_m;
+    for (const int c : axes_) {
+      if (c != lead) fly(c, once && jump[lead] != 0.0 ? missed * (jump[c] / jump[lead]) : 0.0);
+    }
+    v_ = after;
+    return off;
+  }
+
+ private:
+  std::span<const int> axes_;
+  Grids grids_;
+  Vec3 x_ = Vec3::Zero();
+  Vec3 v_ = Vec3::Zero();
+};
+
+/// Positions as packed integers: by how many grids the flight from the frame before misses them.
+std::string pack_positions(const Scenario& scenario, const Trajectory& trajectory,
+                           std::span<const std::size_t> frames, std::size_t balls, std::span<const int> axes,
+                           const Grids& grids) {
+  const auto intervals = static_cast<double>(scenario.frames);
+  const auto time = [&](std::size_t k) { return static_cast<double>(k) / intervals * scenario.duration_s; };
+  std::vector<std::int32_t> missed(frames.size() * balls * axes.size());
+  for (std::size_t i = 0; i < balls; ++i) {
+    PackedFlight flight(axes, grids);
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      const std::size_t k = frames[f];
+      const BallState* state = trajectory.present(k, i) ? &trajectory.frame(k)[i] : nullptr;
+      const auto off = flight.next(state, f > 0 ? time(k) - time(frames[f - 1]) : 0.0);
+      for (std::size_t a = 0; a < axes.size(); ++a) {
+        missed[(a * balls + i) * frames.size() + f] = off[axes[a]];
+      }
+    }
+  }
+  return pack_integers(missed);
 }
 
 /// Translation, rotation, potential of every frame, one after the other, J.
@@ -240,12 +306,11 @@ void add_states(Json& json, const Reference& reference, const Film& film, const 
   const std::vector<int> axes = plane ? std::vector<int>{0, 1} : std::vector<int>{0, 1, 2};
   const std::vector<int> turns = plane ? std::vector<int>{2} : axes;
   json["known"] = frames.size();
-  json["positions"] = pack_states(trajectory, frames, cut.balls, axes, cut.grids.position_m, 2,
-                                  [](const BallState& s) -> const Vec3& { return s.position; });
-  json["velocities"] = pack_states(trajectory, frames, cut.balls, axes, cut.grids.speed_mps, 1,
+  json["positions"] = pack_positions(scenario, trajectory, frames, cut.balls, axes, cut.grids);
+  json["velocities"] = pack_states(trajectory, frames, cut.balls, axes, cut.grids.speed_mps,
                                    [](const BallState& s) -> const Vec3& { return s.velocity; });
   if (scenario.effects.spin) {
-    json["spins"] = pack_states(trajectory, frames, cut.balls, turns, cut.grids.spin_radps, 1,
+    json["spins"] = pack_states(trajectory, frames, cut.balls, turns, cut.grids.spin_radps,
                                 [](const BallState& s) -> const Vec3& { return s.spin; });
   }
   json["energy"] = pack_energies(reference, trajectory, frames);
@@ -482,7 +547,7 @@ PlaybackText write_playback(const Scenario& scenario, const std::vector<const Ru
     }
   }
   Json json = {
-      {"format", "carom-playback-1"},
+      {"format", "carom-playback-2"},
       {"scene", scene_json(scenario)},
       {"balls", balls_json(scenario, cut.balls)},
       {"frames", {{"intervals", scenario.frames}, {"every", cut.every}, {"count", cut.frames.size()}}},

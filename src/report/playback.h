@@ -27,7 +27,7 @@ struct PlaybackLimits {
 /// The runs of a scene as the viewer (reports/web/viewer) plays them: one line of JSON without `<`, `>` and
 /// `&`, so that it may stand in a page. The runs come in the order given, the truth first where there is one.
 ///
-///   format      "carom-playback-1"
+///   format      "carom-playback-2"
 ///   scene       id, title, dimension, duration and step (s), gravity, box, walls, slabs, barriers, spin,
 ///   collisions, and
 ///               events (time, ball, and the factors or states of its actions)
@@ -48,11 +48,22 @@ struct PlaybackLimits {
 ///               may end earlier; `known` is its number of frames. Where there is none its reason says why.
 ///   left_out    labels of the runs that the limit of bytes leaves out
 ///
-/// Integers and doubles are packed as in pack.h. Positions are whole multiples of rounding.position_m, second
-/// differences over the frames; velocities and spins first differences; balls follow each other, axes stand
-/// outside of balls. The grids are powers of two: positions at most 2⁻¹⁴ of the smallest radius (unless the
-/// limits say otherwise), velocities at most 2⁻²⁰ of the largest speed, spins likewise (coarser only where a
-/// number would not fit into 31 bits).
+/// Integers and doubles are packed as in pack.h; balls follow each other, axes stand outside of balls.
+/// Velocities and spins are whole multiples of their grid, as first differences over the frames. Positions
+/// are what the flight from the frame before misses them by, in whole multiples n of R = rounding.position_m:
+/// in the first frame x = n R, then, each axis c by itself,
+///
+///   x' = x + clamp(h/2 (v + v') + a, ±2²⁹ R) + n R                                                       (1)
+///
+/// with h the time between two frames that are kept and v, v' the velocities in them as they are unpacked.
+/// Under a constant acceleration that is the flight itself, and n is 0. An impact at a time t of the interval
+/// jumps v by Δ = v' - v, and (1) misses by (h/2 - t) Δ, a vector along Δ. So the axis l with the largest |Δ|
+/// (of equal ones the first) goes first, with a = 0; where |n_l R| <= h/2 |Δ_l| + R and Δ_l is not 0, the
+/// others follow with a_c = n_l R (Δ_c / Δ_l); else with a = 0. Like a second difference of the positions n
+/// takes two frames to tell, but from velocities that are known better: no rounding is left in it. The grids
+/// are powers of two: positions at most 2⁻¹⁴ of the smallest radius (unless the limits say otherwise),
+/// velocities at most 2⁻²⁰ of the largest speed, spins likewise (coarser only where a number would not fit
+/// into 31 bits).
 struct PlaybackText {
   std::string json;
   std::vector<std::string> left_out;  ///< labels of the runs that the limit of bytes leaves out

@@ -162,7 +162,7 @@ TEST_F(Lab, Scene_IsItsFile_ToTheByte) {
 TEST_F(Lab, Run_IsAPlaybackOfWhatWasAskedFor) {
   const json playback = json::parse(
       post("/api/run", {{"toml", kScene}, {"engines", {"carom", "carom:step"}}, {"truth", true}}).body);
-  EXPECT_EQ(playback.at("format"), "carom-playback-1");
+  EXPECT_EQ(playback.at("format"), "carom-playback-2");
   EXPECT_EQ(playback.at("scene").at("title"), "Two");
   ASSERT_EQ(playback.at("runs").size(), 3U);
   EXPECT_EQ(playback.at("runs")[0].at("label"), "truth");

@@ -37,7 +37,7 @@ export class Panels {
     const { words } = language;
     for (const [name, box] of Object.entries(this.boxes)) box.querySelector("summary").textContent = words[name];
     const { playback, motions } = this.viewer;
-    const facts = [words.rounding(language.number(playback.rounding.position_m, 2))];
+    const facts = [words.rounding(language.number(playback.rounding.position_m, 2), language.number(playback.rounding.speed_mps, 2))];
     if (playback.balls.shown < playback.balls.count) facts.push(words.shownBalls(playback.balls.shown, playback.balls.count));
     if (playback.frames.every > 1) facts.push(words.thinned(playback.frames.every));
     if (playback.leftOut.length > 0) facts.push(words.leftOut(playback.leftOut.join(", ")));

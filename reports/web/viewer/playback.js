@@ -35,22 +35,53 @@ function addUp(numbers) {
   return numbers;
 }
 
-/**
- * A quantity of all balls in all frames, three numbers each: index 3 (frame * balls + ball) + axis.
- * @param order 1: first differences over the frames, 2: second ones
- */
-async function unpackStates(text, { frames, balls, axes, grid, order }) {
+/** A quantity of all balls in all frames, three numbers each: index 3 (frame * balls + ball) + axis. */
+async function unpackStates(text, { frames, balls, axes, grid }) {
   const numbers = await unpackIntegers(text);
   const states = new Float64Array(3 * frames * balls);
   let at = 0;
   for (const axis of axes) {
     for (let i = 0; i < balls; i += 1) {
       let now = 0;
-      let change = 0;
       for (let k = 0; k < frames; k += 1, at += 1) {
-        change = order === 2 ? change + numbers[at] | 0 : numbers[at];
-        now = now + change | 0;
+        now = now + numbers[at] | 0;
         states[3 * (k * balls + i) + axis] = now * grid;
+      }
+    }
+  }
+  return states;
+}
+
+/** Positions, from the velocities and what the flight from frame to frame misses them by: (1) in playback.h. */
+async function unpackPositions(text, velocities, { frames, balls, axes, grid, times }) {
+  const missed = await unpackIntegers(text);
+  const states = new Float64Array(3 * frames * balls);
+  const farthest = 2 ** 29 * grid;
+  for (let i = 0; i < balls; i += 1) {
+    for (let k = 0; k < frames; k += 1) {
+      const to = 3 * (k * balls + i);
+      const from = to - 3 * balls;
+      const off = (place) => missed[(place * balls + i) * frames + k] * grid;
+      if (k === 0) {
+        axes.forEach((axis, place) => { states[to + axis] = off(place); });
+        continue;
+      }
+      const h = times[k] - times[k - 1];
+      const jump = (axis) => velocities[to + axis] - velocities[from + axis];
+      let lead = 0;
+      for (let place = 1; place < axes.length; place += 1) {
+        if (Math.abs(jump(axes[place])) > Math.abs(jump(axes[lead]))) lead = place;
+      }
+      const fly = (place, aside) => {
+        const axis = axes[place];
+        const flight = 0.5 * h * (velocities[from + axis] + velocities[to + axis]) + aside;
+        states[to + axis] = states[from + axis] + Math.min(Math.max(flight, -farthest), farthest) + off(place);
+      };
+      fly(lead, 0);
+      const most = jump(axes[lead]);
+      const once = most !== 0 && Math.abs(off(lead)) <= 0.5 * h * Math.abs(most) + grid;
+      for (let place = 0; place < axes.length; place += 1) {
+        if (place !== lead) fly(place, once ? off(lead) * (jump(axes[place]) / most) : 0);
       }
     }
   }
@@ -74,7 +105,7 @@ async function unpackImpacts(text, duration) {
 /** A playback whose runs are unpacked when they are asked for. */
 export class Playback {
   constructor(json) {
-    if (json.format !== "carom-playback-1") throw new Error(`not a playback: ${json.format}`);
+    if (json.format !== "carom-playback-2") throw new Error(`not a playback: ${json.format}`);
     this.scene = json.scene;
     this.rounding = json.rounding;
     this.leftOut = json.left_out;
@@ -123,12 +154,13 @@ export class Playback {
     const tests = packed.tree_tests
       ? { bruteForce: addUp(await unpackIntegers(packed.brute_force_tests)), tree: addUp(await unpackIntegers(packed.tree_tests)) }
       : null;
+    const velocities = await unpackStates(packed.velocities, { ...shape, axes, grid: speed_mps });
     return {
       frames: packed.known,
-      positions: await unpackStates(packed.positions, { ...shape, axes, grid: position_m, order: 2 }),
-      velocities: await unpackStates(packed.velocities, { ...shape, axes, grid: speed_mps, order: 1 }),
+      positions: await unpackPositions(packed.positions, velocities, { ...shape, axes, grid: position_m, times: this.times }),
+      velocities,
       spins: packed.spins
-        ? await unpackStates(packed.spins, { ...shape, axes: plane ? [2] : axes, grid: spin_radps, order: 1 })
+        ? await unpackStates(packed.spins, { ...shape, axes: plane ? [2] : axes, grid: spin_radps })
         : null,
       translation: energy.subarray(0, packed.known),
       rotation: energy.subarray(packed.known, 2 * packed.known),

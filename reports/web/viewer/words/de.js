@@ -68,7 +68,7 @@ export const de = {
   export: "Speichern",
   exportCsv: "CSV",
   exportPng: "PNG",
-  rounding: (m) => `Orte sind hier auf ${m} m gerundet.`,
+  rounding: (m, mps) => `Orte sind hier auf ${m} m gerundet, Geschwindigkeiten auf ${mps} m/s.`,
   leftOut: (labels) => `Hier weggelassen: ${labels}.`,
   shownBalls: (shown, all) => `Die ersten ${shown} von ${all} Kugeln.`,
   thinned: (every) => `Jedes ${every}. Bild.`,

@@ -68,7 +68,7 @@ export const en = {
   export: "Save",
   exportCsv: "CSV",
   exportPng: "PNG",
-  rounding: (m) => `Positions are rounded to ${m} m here.`,
+  rounding: (m, mps) => `Positions are rounded to ${m} m here, velocities to ${mps} m/s.`,
   leftOut: (labels) => `Left out here: ${labels}.`,
   shownBalls: (shown, all) => `The first ${shown} of ${all} balls.`,
   thinned: (every) => `One frame of ${every}.`,
