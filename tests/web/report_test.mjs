@@ -188,7 +188,7 @@ test("Report_DrawsOnAPlainCanvas_WhereThereIsNoWebGl", async () => {
   const stage = plain.locator(".cv-stage");
   await stage.waitFor();
   assert.equal(await stage.getAttribute("data-painter"), "canvas");
-  assert.match(await stage.locator(".cv-message").innerText(), /WebGL/);
+  assert.match(await plain.locator(".cv-message").innerText(), /WebGL/);
   assert.deepEqual(plain.failures, []);
   await plain.close();
 });

@@ -28,11 +28,12 @@ export class Camera {
     return { right: [cy, 0, -sy], up: [-sy * sp, cp, -cy * sp], back: [sy * cp, sp, cy * cp] };
   }
 
-  matrices(aspect, offset = [0, 0, 0]) {
+  /** @param offset  by how much the whole is moved; origin: what places are told from */
+  matrices(aspect, offset = [0, 0, 0], origin = [0, 0, 0]) {
     const { right, up, back } = this.axes();
     const half = this.halfHeight(aspect);
     const distance = this.flat ? 10 * half : half / Math.tan(kHalfAngle);
-    const eye = this.target.map((x, c) => x + offset[c] + distance * back[c]);
+    const eye = this.target.map((x, c) => x - origin[c] + offset[c] + distance * back[c]);
     const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
     const view = [right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
       dot(right), dot(up), dot(back), 1];

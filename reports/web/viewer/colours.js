@@ -2,6 +2,8 @@
 
 const hex = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255);
 
+const kShades = 256;
+
 export const kBallColours = ["#E69F00", "#56B4E9", "#009E73", "#CC79A7", "#0072B2", "#D55E00", "#F0E442", "#8A929B"].map(hex);
 export const kPlain = hex("#56B4E9");
 export const kGhost = hex("#D55E00");
@@ -14,6 +16,12 @@ export const kThemes = {
     barrier: hex("#b48ade"), tree: hex("#2fcf9f"), velocity: hex("#ffffff"), momentum: hex("#e79bcb"),
     impulse: hex("#ff8f45"), centre: hex("#e8e6e1") },
 };
+
+/** The same from a table: a picture asks for thousands of colours, and makes none. */
+export function tabled(colours) {
+  const table = Array.from({ length: kShades + 1 }, (_, k) => colours(k / kShades));
+  return (share) => table[Math.round(kShades * Math.min(Math.max(share, 0), 1))];
+}
 
 /** From dark blue over grey to yellow, lighter and lighter, so that it reads without colour too. */
 export function ramp(share) {

@@ -92,23 +92,30 @@ export class Motion {
     into.v[at] = v[a] + s * (v[b] - v[a]);
   }
 
-  /** ω of a ball in a frame, rad/s: the physical one, or the course program's look of it, (ẑ × v)/r. */
-  spinOf(kind, frame, ball, radius) {
+  /** The physical ω of a ball in a frame, rad/s. */
+  spinOf(frame, ball) {
     const at = 3 * (frame * this.balls + ball);
-    if (kind === "shown") return [-this.velocities[at + 1] / radius, this.velocities[at] / radius, 0];
     return this.spins ? [this.spins[at], this.spins[at + 1], this.spins[at + 2]] : [0, 0, 0];
   }
 
-  /** How the balls are turned at a time: quaternions x, y, z, w. ω is taken as constant from frame to frame. */
+  /**
+   * How the balls are turned at a time: quaternions x, y, z, w. ω is taken as constant from frame to frame.
+   * @param kind  "physical", or "shown": the course program's look of it, ω = (ẑ × v)/r
+   */
   turnsAt(kind, time, radii, into) {
     if (!this.turns.has(kind)) this.turns.set(kind, this.integrateTurns(kind, radii));
     const turns = this.turns.get(kind);
     const k = this.frameAt(Math.min(time, this.end));
     const rest = Math.min(time, this.end) - this.times[k];
-    for (let i = 0; i < this.balls; i += 1) {
-      const q = turns.subarray(4 * (k * this.balls + i), 4 * (k * this.balls + i) + 4);
-      turned(q, this.spinOf(kind, k, i, radii[i]), rest, into, 4 * i);
-    }
+    for (let i = 0; i < this.balls; i += 1) this.turn(kind, k, i, radii[i], rest, turns, 4 * (k * this.balls + i), into, 4 * i);
+  }
+
+  /** Turns a ball's quaternion, the one that begins at `from`, on by its ω of a frame for a time. */
+  turn(kind, frame, ball, radius, time, turns, from, into, at) {
+    const place = 3 * (frame * this.balls + ball);
+    if (kind === "shown") turned(turns, from, -this.velocities[place + 1] / radius, this.velocities[place] / radius, 0, time, into, at);
+    else if (this.spins) turned(turns, from, this.spins[place], this.spins[place + 1], this.spins[place + 2], time, into, at);
+    else turned(turns, from, 0, 0, 0, time, into, at);
   }
 
   integrateTurns(kind, radii) {
@@ -119,7 +126,7 @@ export class Motion {
       const h = this.times[k + 1] - this.times[k];
       for (let i = 0; i < n; i += 1) {
         const at = 4 * (k * n + i);
-        turned(turns.subarray(at, at + 4), this.spinOf(kind, k, i, radii[i]), h, turns, at + 4 * n);
+        this.turn(kind, k, i, radii[i], h, turns, at, turns, at + 4 * n);
       }
     }
     return turns;
@@ -135,14 +142,19 @@ export class Motion {
   }
 }
 
-/** q turned on by the constant ω for a time: exp(ω t / 2) q. */
-function turned(q, spin, time, into, at) {
-  const rate = Math.hypot(...spin);
+/** The quaternion at `from`, turned on by the constant ω for a time: exp(ω t / 2) q. */
+function turned(turns, from, wx, wy, wz, time, into, at) {
+  const rate = Math.sqrt(wx * wx + wy * wy + wz * wz);
   const half = 0.5 * rate * time;
   const s = rate > 0 ? Math.sin(half) / rate : 0;
-  const [x, y, z] = [spin[0] * s, spin[1] * s, spin[2] * s];
+  const x = wx * s;
+  const y = wy * s;
+  const z = wz * s;
   const w = Math.cos(half);
-  const [a, b, c, d] = q;
+  const a = turns[from];
+  const b = turns[from + 1];
+  const c = turns[from + 2];
+  const d = turns[from + 3];
   into[at] = w * a + x * d + y * c - z * b;
   into[at + 1] = w * b - x * c + y * d + z * a;
   into[at + 2] = w * c + x * b - y * a + z * d;

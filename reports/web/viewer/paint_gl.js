@@ -1,6 +1,8 @@
 // WebGL2: each ball is a square that is turned to the eye, in which a ray is cast at the sphere. So a ball is round at
 // every size, and its texture shows how it is turned.
 
+const kThrough = 0.3; // of its colour: how an arrow behind a ball is seen
+
 // A ball is drawn at least as wide as three pixels, so that none is too small to be seen.
 const kBallVertex = `#version 300 es
 layout(location=0) in vec4 sphere;
@@ -79,13 +81,14 @@ void main() {
 const kStrokeVertex = `#version 300 es
 layout(location=0) in vec3 from;
 layout(location=1) in vec3 to;
-layout(location=2) in vec2 widths;
+layout(location=2) in vec3 widths;
 layout(location=3) in vec4 colour;
 uniform mat4 view, projection;
 uniform vec2 size;
+uniform float scale, haloed, fade;
 out vec4 tint;
-out float across;
-out float half_px;
+out float across, half_px;
+flat out float halo;
 void main() {
   vec4 a = projection * view * vec4(from, 1.0);
   vec4 b = projection * view * vec4(to, 1.0);
@@ -98,9 +101,10 @@ void main() {
   bool end = (gl_VertexID & 1) == 1;
   float side = gl_VertexID > 1 ? 1.0 : -1.0;
   vec4 p = end ? b : a;
-  half_px = 0.5 * (end ? widths.y : widths.x) + 0.7;
+  halo = haloed * scale * widths.z;
+  half_px = 0.5 * scale * (end ? widths.y : widths.x) + halo + 0.7;
   across = side * half_px;
-  tint = colour;
+  tint = vec4(colour.rgb, fade * colour.a);
   p.xy += side * normal * half_px / size * p.w;
   p.z -= 1e-4 * p.w;
   gl_Position = p;
@@ -110,10 +114,13 @@ const kStrokeFragment = `#version 300 es
 precision highp float;
 in vec4 tint;
 in float across, half_px;
+flat in float halo;
+uniform vec3 paper;
 out vec4 paint;
 void main() {
-  float cover = clamp(half_px - abs(across) + 0.2, 0.0, 1.0);
-  paint = vec4(tint.rgb, 1.0) * (tint.a * cover);
+  float inside = half_px - abs(across) + 0.2;
+  vec3 c = mix(paper, tint.rgb, halo > 0.0 ? clamp(inside - halo, 0.0, 1.0) : 1.0);
+  paint = vec4(c, 1.0) * (tint.a * clamp(inside, 0.0, 1.0));
 }`;
 
 const kSheetVertex = `#version 300 es
@@ -174,33 +181,28 @@ class Brush {
     else gl.uniform2fv(place, value);
   }
 
-  draw(numbers, uniforms) {
-    const count = numbers.length / this.stride;
-    if (count === 0) return;
+  /** @param rows  numbers, and the count of rows that are drawn; nothing: those of before once more */
+  draw(rows, uniforms) {
     const { gl } = this;
+    if (rows) this.count = rows.count;
+    const { count } = this;
+    if (count === 0) return;
     gl.useProgram(this.program);
-    for (const [name, value] of Object.entries(uniforms)) this.set(name, value);
+    for (const name in uniforms) this.set(name, uniforms[name]);
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.DYNAMIC_DRAW);
+    if (rows) gl.bufferData(gl.ARRAY_BUFFER, rows.numbers, gl.DYNAMIC_DRAW, 0, count * this.stride);
     if (this.instanced) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     else gl.drawArrays(gl.TRIANGLES, 0, count);
   }
 }
 
-function ballNumbers(balls) {
-  const numbers = new Float32Array(14 * balls.length);
-  balls.forEach((ball, i) => {
-    const at = 14 * i;
-    numbers.set(ball.centre, at);
-    numbers[at + 3] = ball.radius;
-    numbers.set(ball.turned ?? [0, 0, 0, 1], at + 4);
-    numbers.set(ball.colour, at + 8);
-    numbers[at + 11] = ball.alpha;
-    numbers[at + 12] = ball.turned ? 1 : 0;
-    numbers[at + 13] = ball.ring ? 1 : 0;
-  });
-  return numbers;
+function sheetRows(sheets) {
+  const numbers = [];
+  for (const { corners, colour, alpha } of sheets) {
+    for (const k of [0, 1, 2, 0, 2, 3]) numbers.push(...corners[k], ...colour, alpha);
+  }
+  return { numbers: new Float32Array(numbers), count: 6 * sheets.length };
 }
 
 export class PaintGl {
@@ -222,7 +224,7 @@ export class PaintGl {
     this.canvas = canvas;
     this.gl = gl;
     this.balls = new Brush(gl, kBallVertex, kBallFragment, [4, 4, 4, 2], true);
-    this.strokes = new Brush(gl, kStrokeVertex, kStrokeFragment, [3, 3, 2, 4], true);
+    this.strokes = new Brush(gl, kStrokeVertex, kStrokeFragment, [3, 3, 3, 4], true);
     this.sheets = new Brush(gl, kSheetVertex, kSheetFragment, [3, 4], false);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -246,39 +248,25 @@ export class PaintGl {
     gl.enable(gl.SCISSOR_TEST);
     gl.scissor(part.left, bottom, part.width, part.height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    const { view, projection, half, distance } = camera.matrices(part.width / part.height, offset);
+    const { view, projection, half, distance } = camera.matrices(part.width / part.height, offset, picture.origin);
     const pixel = 2 * half / part.height / (camera.flat ? 1 : distance);
     const common = { view, projection };
     const ballLook = { ...common, flatView: camera.flat ? 1 : 0, pixel, ink: theme.ink };
+    const strokeLook = { ...common, size: [0.5 * part.width, 0.5 * part.height], scale, paper: theme.paper, haloed: 1, fade: 1 };
     gl.enable(gl.DEPTH_TEST);
     gl.depthMask(true);
-    this.balls.draw(ballNumbers(picture.balls.filter((ball) => ball.alpha === 1)), ballLook);
-    const size = [0.5 * part.width, 0.5 * part.height];
-    this.strokes.draw(this.strokeNumbers(picture.strokes.filter((each) => !each.front), scale), { ...common, size });
+    this.balls.draw(picture.balls, ballLook);
+    this.strokes.draw(picture.strokes, strokeLook);
     gl.depthMask(false);
-    this.balls.draw(ballNumbers(picture.balls.filter((ball) => ball.alpha < 1)), ballLook);
-    const corners = [];
-    for (const { corners: c, colour, alpha } of picture.sheets) {
-      for (const k of [0, 1, 2, 0, 2, 3]) corners.push(...c[k], ...colour, alpha);
-    }
-    this.sheets.draw(new Float32Array(corners), common);
+    this.balls.draw(picture.ghosts, ballLook);
+    this.sheets.draw(sheetRows(picture.sheets), common);
+    if (!camera.flat) this.strokes.draw(picture.arrows, strokeLook);
     gl.disable(gl.DEPTH_TEST);
-    this.strokes.draw(this.strokeNumbers(picture.strokes.filter((each) => each.front), scale), { ...common, size });
+    // In the plane nothing hides an arrow; in space what is behind balls shines through.
+    if (camera.flat) this.strokes.draw(picture.arrows, strokeLook);
+    else if (picture.arrows.count > 0) this.strokes.draw(null, { ...strokeLook, haloed: 0, fade: kThrough });
+    this.strokes.draw(picture.fronts, strokeLook);
     gl.depthMask(true);
-  }
-
-  strokeNumbers(strokes, scale) {
-    const numbers = new Float32Array(12 * strokes.length);
-    strokes.forEach((stroke, i) => {
-      const at = 12 * i;
-      numbers.set(stroke.from, at);
-      numbers.set(stroke.to, at + 3);
-      numbers[at + 6] = stroke.width * scale;
-      numbers[at + 7] = stroke.end * scale;
-      numbers.set(stroke.colour, at + 8);
-      numbers[at + 11] = stroke.alpha;
-    });
-    return numbers;
   }
 
   finish() {

@@ -1,35 +1,112 @@
 // What is drawn at one moment, as plain lists that both painters (paint_gl.js, paint_2d.js) draw: balls, strokes that
 // are as wide in pixels at their two ends as they say (an arrow's head is a stroke that narrows to a point), and sheets.
+// Balls and strokes are numbers one after the other, as WebGL takes them; a picture is written over from frame to frame,
+// so that thousands of balls leave nothing for the collector of garbage.
+
+/** Rows of so many numbers each. */
+class Rows {
+  constructor(stride) {
+    this.stride = stride;
+    this.numbers = new Float32Array(64 * stride);
+    this.count = 0;
+  }
+
+  /** A further row. @returns where in `numbers` it begins */
+  add() {
+    const at = this.count * this.stride;
+    if (at + this.stride > this.numbers.length) {
+      const more = new Float32Array(2 * this.numbers.length);
+      more.set(this.numbers);
+      this.numbers = more;
+    }
+    this.count += 1;
+    return at;
+  }
+}
+
+// Where in its row a number stands.
+export const kBall = { centre: 0, radius: 3, turned: 4, colour: 8, alpha: 11, textured: 12, ring: 13, stride: 14 };
+export const kStroke = { from: 0, to: 3, width: 6, end: 7, halo: 8, colour: 9, alpha: 12, stride: 13 };
+
+const kHead_px = 11;
+const kShaft_px = 3;
+const kHalo_px = 1.5;
+const kThinnest = 0.5; // of the shaft and head of an arrow: how thin a short one gets
 
 export class Picture {
   constructor() {
-    this.balls = [];
-    this.strokes = [];
+    this.balls = new Rows(kBall.stride);
+    this.ghosts = new Rows(kBall.stride);    // balls that others are seen through
+    this.strokes = new Rows(kStroke.stride);
+    this.arrows = new Rows(kStroke.stride);  // seen through balls, too
+    this.fronts = new Rows(kStroke.stride);  // nothing stands before them
     this.sheets = [];
+    this.origin = [0, 0, 0];
   }
 
-  /** @param look  turned: quaternion where a texture shows it; alpha; ring: whether it is marked */
-  ball(centre, radius, colour, { turned = null, alpha = 1, ring = false } = {}) {
-    this.balls.push({ centre, radius, colour, turned, alpha, ring });
+  /** Begins anew. @param origin  what places are told from: far from zero a short number would not hold them */
+  begin(origin) {
+    for (const rows of [this.balls, this.ghosts, this.strokes, this.arrows, this.fronts]) rows.count = 0;
+    this.sheets.length = 0;
+    this.origin = origin;
+  }
+
+  /** @param turns  quaternions of all balls where a texture shows them, or nothing; ball  its number among them */
+  ball(x, y, z, radius, colour, { turns = null, ball = 0, alpha = 1, ring = false }) {
+    const rows = alpha < 1 ? this.ghosts : this.balls;
+    const at = rows.add();
+    const { numbers } = rows;
+    numbers[at] = x - this.origin[0];
+    numbers[at + 1] = y - this.origin[1];
+    numbers[at + 2] = z - this.origin[2];
+    numbers[at + kBall.radius] = radius;
+    for (let c = 0; c < 4; c += 1) numbers[at + kBall.turned + c] = turns ? turns[4 * ball + c] : c === 3 ? 1 : 0;
+    for (let c = 0; c < 3; c += 1) numbers[at + kBall.colour + c] = colour[c];
+    numbers[at + kBall.alpha] = alpha;
+    numbers[at + kBall.textured] = turns ? 1 : 0;
+    numbers[at + kBall.ring] = ring ? 1 : 0;
+  }
+
+  line(rows, ax, ay, az, bx, by, bz, colour, width, end, halo, alpha) {
+    const at = rows.add();
+    const { numbers } = rows;
+    const [ox, oy, oz] = this.origin;
+    numbers[at] = ax - ox;
+    numbers[at + 1] = ay - oy;
+    numbers[at + 2] = az - oz;
+    numbers[at + kStroke.to] = bx - ox;
+    numbers[at + kStroke.to + 1] = by - oy;
+    numbers[at + kStroke.to + 2] = bz - oz;
+    numbers[at + kStroke.width] = width;
+    numbers[at + kStroke.end] = end;
+    numbers[at + kStroke.halo] = halo;
+    for (let c = 0; c < 3; c += 1) numbers[at + kStroke.colour + c] = colour[c];
+    numbers[at + kStroke.alpha] = alpha;
   }
 
   stroke(from, to, colour, { width = 1.5, end = width, alpha = 1, front = false } = {}) {
-    this.strokes.push({ from, to, colour, width, end, alpha, front });
+    this.line(front ? this.fronts : this.strokes, ...from, ...to, colour, width, end, 0, alpha);
   }
 
-  arrow(from, by, colour, unit) {
-    const length = Math.hypot(...by);
+  /**
+   * An arrow with an edge in the colour of the paper, which sets it off from what it crosses.
+   * @param unit   the length from which on its head is as long as heads are
+   * @param thick  how many times as thick as others
+   */
+  arrow(x, y, z, dx, dy, dz, colour, unit, thick = 1) {
+    const length = Math.hypot(dx, dy, dz);
     if (!(length > 0.02 * unit)) return;
-    const head = Math.min(0.4 * length, 0.35 * unit) / length;
-    const neck = from.map((x, c) => x + (1 - head) * by[c]);
-    const tip = from.map((x, c) => x + by[c]);
-    this.stroke(from, neck, colour, { width: 3 });
-    this.stroke(neck, tip, colour, { width: 11, end: 0.5 });
+    const head = Math.min(0.4 * length, 0.35 * unit);
+    const thin = thick * Math.max(head / (0.35 * unit), kThinnest);
+    const s = 1 - head / length;
+    const [nx, ny, nz] = [x + s * dx, y + s * dy, z + s * dz];
+    this.line(this.arrows, x, y, z, nx, ny, nz, colour, kShaft_px * thin, kShaft_px * thin, kHalo_px, 1);
+    this.line(this.arrows, nx, ny, nz, x + dx, y + dy, z + dz, colour, kHead_px * thin, 0.5, kHalo_px, 1);
   }
 
   /** A flat four-cornered sheet. */
   sheet(corners, colour, alpha) {
-    this.sheets.push({ corners, colour, alpha });
+    this.sheets.push({ corners: corners.map((corner) => corner.map((x, c) => x - this.origin[c])), colour, alpha });
   }
 
   cube(centre, half, colour, dimension, alpha) {

@@ -1,8 +1,8 @@
 // Makes the picture of one run at one moment, as the switches say.
 
-import { kBallColours, kGhost, kPlain, parted, ramp } from "./colours.js";
+import { kBallColours, kGhost, kPlain, parted, ramp, tabled } from "./colours.js";
 import { totals } from "./motion.js";
-import { drawRoom, Picture } from "./picture.js";
+import { drawRoom } from "./picture.js";
 import { divide } from "./tree.js";
 
 const kManyBalls = 24;      // with more, colours by number say nothing
@@ -55,31 +55,36 @@ export function colourOf(ball, count) {
 }
 
 /**
+ * Writes what is to be seen into a picture.
  * @param shot  motion, state, bodies, view, theme, toggles, colouring, scales, rate, twin (state of the run that it is
- *              held against, or nothing), ghost (draw the twin too)
+ *              held against, or nothing), ghost (draw the twin too), turns (room for a quaternion of each ball)
  */
-export function pictureOf(shot) {
-  const picture = new Picture();
-  const { motion, state, bodies, theme, toggles } = shot;
-  drawRoom(picture, motion.scene, shot.view, theme);
-  const turns = new Float32Array(4 * motion.balls);
-  if (toggles.spin !== "off") motion.turnsAt(toggles.spin, state.time, bodies.radii, turns);
-  for (let i = 0; i < motion.balls; i += 1) {
-    if (Number.isNaN(bodies.masses[i])) continue;
-    const away = shot.twin ? distance(state, shot.twin, i) / bodies.radii[i] : 0;
-    picture.ball(point(state.x, i), bodies.radii[i], shade(shot, i, away), {
-      turned: toggles.spin === "off" ? null : turns.subarray(4 * i, 4 * i + 4),
-      ring: (shot.colouring === "parted" && away > kDiverged) || shot.chosen === i,
-    });
-    if (shot.ghost && shot.twin) picture.ball(point(shot.twin.x, i), bodies.radii[i], kGhost, { alpha: 0.35 });
-  }
+export function drawScene(picture, shot) {
+  const { toggles } = shot;
+  picture.begin(shot.view.low.map((x, c) => 0.5 * (x + shot.view.high[c])));
+  drawRoom(picture, shot.motion.scene, shot.view, shot.theme);
+  drawBalls(picture, shot);
   if (toggles.trails) drawTrails(picture, shot);
-  drawArrows(picture, shot);
+  if (toggles.momentum || toggles.velocity) drawArrows(picture, shot);
+  if (toggles.impulse && shot.scales.impulse > 0) drawImpulses(picture, shot);
   if (toggles.centre || toggles.frame) drawCentre(picture, shot);
-  if (toggles.tree) {
-    drawTree(picture, shot);
+  if (toggles.tree) drawTree(picture, shot);
+}
+
+function drawBalls(picture, shot) {
+  const { motion, state: { x, time }, bodies: { masses, radii }, toggles, twin } = shot;
+  const turns = toggles.spin === "off" ? null : shot.turns;
+  if (turns) motion.turnsAt(toggles.spin, time, radii, turns);
+  const look = { turns, ball: 0, alpha: 1, ring: false };
+  const ghost = { alpha: 0.35 };
+  for (let i = 0; i < motion.balls; i += 1) {
+    if (Number.isNaN(masses[i])) continue;
+    const away = twin ? distance(shot.state, twin, i) / radii[i] : 0;
+    look.ball = i;
+    look.ring = (shot.colouring === "parted" && away > kDiverged) || shot.chosen === i;
+    picture.ball(x[3 * i], x[3 * i + 1], x[3 * i + 2], radii[i], shade(shot, i, away), look);
+    if (shot.ghost && twin) picture.ball(twin.x[3 * i], twin.x[3 * i + 1], twin.x[3 * i + 2], radii[i], kGhost, ghost);
   }
-  return picture;
 }
 
 /** The cells as far as they lie in the box: outside of it there is no ball to look for. */
@@ -97,9 +102,12 @@ export function distance(state, twin, i) {
   return Math.hypot(state.x[3 * i] - twin.x[3 * i], state.x[3 * i + 1] - twin.x[3 * i + 1], state.x[3 * i + 2] - twin.x[3 * i + 2]);
 }
 
-function shade({ motion, state, colouring, scales, twin }, i, away) {
-  if (colouring === "parted" && twin) return parted((Math.log10(Math.max(away, 1e-12)) + 4) / 4);
-  if (colouring === "speed") return ramp(Math.hypot(...point(state.v, i)) / (scales.speed || 1));
+const shadeOfSpeed = tabled(ramp);
+const shadeOfDifference = tabled(parted);
+
+function shade({ motion, state: { v }, colouring, scales, twin }, i, away) {
+  if (colouring === "parted" && twin) return shadeOfDifference((Math.log10(Math.max(away, 1e-12)) + 4) / 4);
+  if (colouring === "speed") return shadeOfSpeed(Math.sqrt(v[3 * i] ** 2 + v[3 * i + 1] ** 2 + v[3 * i + 2] ** 2) / (scales.speed || 1));
   return colourOf(i, motion.balls);
 }
 
@@ -125,22 +133,35 @@ function drawTrails(picture, { motion, state, bodies, toggles }) {
   }
 }
 
-function drawArrows(picture, shot) {
-  const { motion, state, bodies, theme, toggles, scales, unit } = shot;
-  const drift = toggles.frame ? totals(state, bodies.masses).velocity : [0, 0, 0];
+const kMomentumFirst = [true, false];
+const kVelocityFirst = [false, true];
+
+/**
+ * From the surface on, so that no arrow hides in its ball. Velocity and momentum point one way: the shorter one lies on
+ * the longer one, and a momentum is thicker, so that both are seen.
+ */
+function drawArrows(picture, { motion, state: { x, v }, bodies, theme, toggles, scales, unit }) {
+  const drift = toggles.frame ? totals({ x, v }, bodies.masses).velocity : [0, 0, 0];
+  const perSpeed = toggles.velocity && scales.speed > 0 ? 2 * unit / scales.speed : 0;
+  const perMomentum = toggles.momentum && scales.momentum > 0 ? 2 * unit / scales.momentum : 0;
   for (let i = 0; i < motion.balls; i += 1) {
-    if (Number.isNaN(bodies.masses[i])) continue;
-    const v = point(state.v, i).map((x, c) => x - drift[c]);
-    // From the surface on, so that no arrow hides in its ball.
-    const speed = Math.hypot(...v);
-    const from = point(state.x, i).map((x, c) => x + (speed > 0 ? bodies.radii[i] * v[c] / speed : 0));
-    if (toggles.velocity && scales.speed > 0) picture.arrow(from, v.map((x) => x * 2 * unit / scales.speed), theme.velocity, unit);
     const m = bodies.masses[i];
-    if (toggles.momentum && scales.momentum > 0 && Number.isFinite(m)) {
-      picture.arrow(from, v.map((x) => m * x * 2 * unit / scales.momentum), theme.momentum, unit);
+    if (Number.isNaN(m)) continue;
+    const vx = v[3 * i] - drift[0];
+    const vy = v[3 * i + 1] - drift[1];
+    const vz = v[3 * i + 2] - drift[2];
+    const speed = Math.sqrt(vx * vx + vy * vy + vz * vz);
+    if (speed === 0) continue;
+    const out = bodies.radii[i] / speed;
+    const fromX = x[3 * i] + out * vx;
+    const fromY = x[3 * i + 1] + out * vy;
+    const fromZ = x[3 * i + 2] + out * vz;
+    const p = Number.isFinite(m) ? perMomentum * m : 0;
+    for (const momentum of p > perSpeed ? kMomentumFirst : kVelocityFirst) {
+      const s = momentum ? p : perSpeed;
+      if (s > 0) picture.arrow(fromX, fromY, fromZ, s * vx, s * vy, s * vz, momentum ? theme.momentum : theme.velocity, unit, momentum ? 1.8 : 1);
     }
   }
-  if (toggles.impulse && scales.impulse > 0) drawImpulses(picture, shot);
 }
 
 function drawImpulses(picture, { motion, state, bodies, theme, scales, unit, rate }) {
@@ -153,7 +174,7 @@ function drawImpulses(picture, { motion, state, bodies, theme, scales, unit, rat
       const impulse = motion.impulseAt(time, i, bodies.masses[i]);
       const size = Math.hypot(...impulse) || 1;
       const from = point(state.x, i).map((x, c) => x + bodies.radii[i] * impulse[c] / size);
-      picture.arrow(from, impulse.map((x) => x * 2.2 * unit / scales.impulse), theme.impulse, unit);
+      picture.arrow(...from, ...impulse.map((x) => x * 2.2 * unit / scales.impulse), theme.impulse, unit, 1.3);
     }
   }
 }

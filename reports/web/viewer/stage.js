@@ -20,7 +20,7 @@ export class Stage {
     this.plain = plain;
     this.message = make("p", { className: "cv-message", role: "status", hidden: true });
     this.names = make("div", { className: "cv-names" });
-    this.element = make("div", { className: "cv-stage" }, this.names, this.message);
+    this.element = make("div", { className: "cv-stage" }, this.names);
     this.panes = [];
     this.quality = 1; // pixels along an edge, by those of the screen
     this.take(plain ? null : PaintGl);

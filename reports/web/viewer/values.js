@@ -44,7 +44,7 @@ export class Values {
     for (let axis = 0; axis < axes; axis += 1) numbers.push(at(states[0].v, axis));
     numbers.push(Math.hypot(at(states[0].v, 0), at(states[0].v, 1), at(states[0].v, 2)));
     if (scene.spin) {
-      const spin = motion.spinOf("physical", states[0].frame, i, radii[i]);
+      const spin = motion.spinOf(states[0].frame, i);
       numbers.push(scene.dimension === 2 ? spin[2] : Math.hypot(...spin));
     }
     if (states[1]) numbers.push(distance(states[0], states[1], i));

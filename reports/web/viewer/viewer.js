@@ -14,9 +14,9 @@ import { csvOf } from "./export.js";
 import { Motion } from "./motion.js";
 import { Panels } from "./panels.js";
 import { Pace } from "./pace.js";
-import { extent } from "./picture.js";
+import { extent, Picture } from "./picture.js";
 import { Playback } from "./playback.js";
-import { bodiesAt, colourOf, distance, pictureOf, scalesOf } from "./scenery.js";
+import { bodiesAt, colourOf, distance, drawScene, scalesOf } from "./scenery.js";
 import { Stage } from "./stage.js";
 import { language } from "./words/words.js";
 
@@ -59,6 +59,7 @@ export class Viewer {
     this.labels = [wished[0] ?? own, wished[1] ?? ""];
     this.motions = [];
     this.states = [];
+    this.pictures = [new Picture(), new Picture()];
     this.controls = new Controls(this);
     this.panels = new Panels(this, options.boxes);
     this.live = make("p", { className: "cv-live", role: "status", "aria-live": "polite" });
@@ -94,6 +95,7 @@ export class Viewer {
     }
     this.motions = runs.map((run) => new Motion(this.playback, run));
     this.states = [];
+    this.turns = new Float32Array(4 * this.playback.balls.shown);
     if (this.motions.length === 2 && this.layout === "one") this.layout = "beside";
     if (this.motions.length === 1) this.layout = "one";
     this.bodies = bodiesAt(this.playback, this.clock.time);
@@ -114,7 +116,7 @@ export class Viewer {
     });
     this.stage.takesClicks = Boolean(this.options.onBall);
     this.host.replaceChildren(this.controls.head, make("div", { className: "cv-body" },
-      make("div", { className: "cv-left" }, this.stage.element, this.controls.counts, this.controls.transport, this.controls.switches, this.live, this.controls.caption),
+      make("div", { className: "cv-left" }, this.stage.element, this.stage.message, this.controls.counts, this.controls.transport, this.controls.switches, this.live, this.controls.caption),
       this.panels.element), this.controls.dialog);
   }
 
@@ -254,7 +256,8 @@ export class Viewer {
     this.motions.forEach((motion, k) => { this.states[k] = motion.at(time, this.states[k]); });
     this.bodies = bodiesAt(this.playback, time);
     const shots = this.shots();
-    const pictures = shots.map((shot) => ({ picture: pictureOf(shot), state: shot.state, radii: shot.bodies.radii,
+    shots.forEach((shot, k) => drawScene(this.pictures[k], shot));
+    const pictures = shots.map((shot, k) => ({ picture: this.pictures[k], state: shot.state, radii: shot.bodies.radii,
       offset: this.offset(shot), run: shot.motion.about.label, name: this.nameOf(shot) }));
     this.stage.paint(pictures, this.theme);
   }
@@ -272,7 +275,7 @@ export class Viewer {
     const [view, theme] = [this.view, this.theme];
     const size = Math.max(...view.high.map((x, c) => x - view.low[c]));
     const common = { bodies: this.bodies, view, theme, toggles: this.toggles, colouring: this.colouring, scales: this.scales,
-      rate: this.clock.rate * this.clock.speed, unit: 0.07 * size, chosen: this.chosen };
+      rate: this.clock.rate * this.clock.speed, unit: 0.07 * size, chosen: this.chosen, turns: this.turns };
     const both = this.motions.length === 2;
     const first = { ...common, motion: this.motions[0], state: this.states[0], twin: both ? this.states[1] : null,
       ghost: this.layout === "over" };
