@@ -51,7 +51,7 @@ test("Report_PlaysEveryModeOfTheCourse_InBothLanguages", async () => {
       const told = await viewer.locator(".cv-mode").innerText();
       assert.ok(told.includes(word), `${id}: ${told}`);
       assert.equal(await viewer.locator(".cv-mode > p").count(), 3, id);
-      assert.equal(await viewer.locator(".cv-mode math").count(), 1, id);
+      assert.ok(await viewer.locator(".cv-mode math").count() >= 1, id);
       assert.equal(await viewer.getAttribute("lang"), language);
     }
     assert.equal(await viewer.locator(".cv-stage").getAttribute("data-painter"), "webgl2");

@@ -241,6 +241,7 @@ export class Viewer {
     this.stage.quality = this.clock.playing ? this.pace.quality : 1;
     this.paint();
     if (moved) this.announce(this.impactsBetween(before, this.clock.time), false);
+    if (moved && !this.clock.playing) this.tell(language.words.paused(language.number(this.clock.time)));
     if (now >= (this.panelsDue ?? 0) || !this.clock.playing) {
       this.panelsDue = now + kPanels_ms;
       this.controls.show();
