@@ -45,37 +45,76 @@ std::optional<double> earlier(std::optional<double> a, std::optional<double> b) 
   return std::min(*a, *b);
 }
 
-/// Two runs against each other.
-/// @param conserved  of each run
-PairComparison pair_of(const Yardstick& yardstick, double tolerance_m, std::size_t a, std::size_t b,
-                       const std::vector<RunComparison>& runs,
-                       const std::vector<std::vector<Conserved>>& conserved) {
-  const Trajectory& trajectory_a = runs[a].run.trajectory;
-  const Trajectory& trajectory_b = runs[b].run.trajectory;
-  const std::vector<Conserved>& conserved_a = conserved[a];
-  const std::vector<Conserved>& conserved_b = conserved[b];
-  PairComparison result;
-  result.a = a;
-  result.b = b;
-  Apart apart;
-  std::vector<double> angular_momenta;
-  Distances distances;
-  for (std::size_t k = 0; k < conserved_a.size(); ++k) {
-    const Conserved& in_a = conserved_a[k];
-    const Conserved& in_b = conserved_b[k];
-    apart.position_m.push_back(distances.add(trajectory_a, trajectory_b, k));
-    apart.energy.push_back(yardstick.by_energy(std::abs(in_a.energy_J - in_b.energy_J)));
-    apart.momentum.push_back(yardstick.by_momentum((in_a.momentum_Ns - in_b.momentum_Ns).norm()));
-    angular_momenta.push_back(
-        yardstick.by_angular_momentum((in_a.angular_momentum_Nms - in_b.angular_momentum_Nms).norm()));
+/// Two runs against each other, frame by frame.
+class Meeting {
+ public:
+  /// @param a, b  indices of the runs
+  /// @param conserved  of each run
+  Meeting(const Yardstick& yardstick, std::size_t a, std::size_t b, const std::vector<RunComparison>& runs,
+          const std::vector<std::vector<Conserved>>& conserved)
+      : yardstick_(yardstick),
+        trajectory_a_(runs[a].run.trajectory),
+        trajectory_b_(runs[b].run.trajectory),
+        conserved_a_(conserved[a]),
+        conserved_b_(conserved[b]) {
+    result_.a = a;
+    result_.b = b;
   }
-  result.position_m = *largest(apart.position_m);
-  result.position_rms_m = distances.root_mean_square();
-  result.energy = largest(apart.energy);
-  result.momentum = largest(apart.momentum);
-  result.angular_momentum = largest(angular_momenta);
-  result.first_divergence = first_divergence(trajectory_a, trajectory_b, apart, tolerance_m);
-  return result;
+
+  void add(std::size_t frame) {
+    const Conserved& in_a = conserved_a_[frame];
+    const Conserved& in_b = conserved_b_[frame];
+    apart_.position_m.push_back(distances_.add(trajectory_a_, trajectory_b_, frame));
+    apart_.energy.push_back(yardstick_.by_energy(std::abs(in_a.energy_J - in_b.energy_J)));
+    apart_.momentum.push_back(yardstick_.by_momentum((in_a.momentum_Ns - in_b.momentum_Ns).norm()));
+    angular_momenta_.push_back(
+        yardstick_.by_angular_momentum((in_a.angular_momentum_Nms - in_b.angular_momentum_Nms).norm()));
+  }
+
+  /// @pre all frames were added, in order
+  PairComparison result(double tolerance_m) const {
+    PairComparison result = result_;
+    result.position_m = *largest(apart_.position_m);
+    result.position_rms_m = distances_.root_mean_square();
+    result.energy = largest(apart_.energy);
+    result.momentum = largest(apart_.momentum);
+    result.angular_momentum = largest(angular_momenta_);
+    result.first_divergence = first_divergence(trajectory_a_, trajectory_b_, apart_, tolerance_m);
+    return result;
+  }
+
+ private:
+  const Yardstick& yardstick_;
+  const Trajectory& trajectory_a_;
+  const Trajectory& trajectory_b_;
+  const std::vector<Conserved>& conserved_a_;
+  const std::vector<Conserved>& conserved_b_;
+  PairComparison result_;
+  Apart apart_;
+  std::vector<double> angular_momenta_;
+  Distances distances_;
+};
+
+/// Every two runs that ended well.
+std::vector<PairComparison> compare_pairs(const Yardstick& yardstick, double tolerance_m,
+                                          const std::vector<RunComparison>& runs,
+                                          const std::vector<std::vector<Conserved>>& conserved) {
+  const auto ok = [&](std::size_t run) { return runs[run].run.status == RunStatus::ok; };
+  std::vector<Meeting> meetings;
+  for (std::size_t a = 0; a < runs.size(); ++a) {
+    for (std::size_t b = a + 1; b < runs.size(); ++b) {
+      if (ok(a) && ok(b)) meetings.emplace_back(yardstick, a, b, runs, conserved);
+    }
+  }
+  // Frame after frame, not pair after pair: one frame of all runs fits into the near caches.
+  const auto frames = static_cast<std::size_t>(yardstick.scene().frames) + 1;
+  for (std::size_t k = 0; k < frames; ++k) {
+    for (Meeting& meeting : meetings) meeting.add(k);
+  }
+  std::vector<PairComparison> pairs;
+  pairs.reserve(meetings.size());
+  for (const Meeting& meeting : meetings) pairs.push_back(meeting.result(tolerance_m));
+  return pairs;
 }
 
 }  // namespace
@@ -107,12 +146,7 @@ SceneComparison compare(ScenarioPtr scene, Truth truth, std::vector<Run> runs,
     measure_statistics(gas, each);
     hold_gates(result.scene->gate, each);
   }
-  for (std::size_t a = 0; a < result.runs.size(); ++a) {
-    for (std::size_t b = a + 1; b < result.runs.size(); ++b) {
-      if (result.runs[a].run.status != RunStatus::ok || result.runs[b].run.status != RunStatus::ok) continue;
-      result.pairs.push_back(pair_of(yardstick, result.position_tolerance_m, a, b, result.runs, conserved));
-    }
-  }
+  result.pairs = compare_pairs(yardstick, result.position_tolerance_m, result.runs, conserved);
   return result;
 }
 

@@ -59,7 +59,8 @@ Given given_by_events(const Scenario& scene) {
 
 }  // namespace
 
-Reference::Reference(const Scenario& s) : scenario(&s) {
+Reference::Reference(const Scenario& s)
+    : scenario(&s), gravity_(s.effects.gravity.value_or(Vec3::Zero())), strength_mps2_(gravity_.norm()) {
   const Cast cast(s);
   std::vector<BallState> states;
   double momentum_sum = 0.0;
@@ -100,28 +101,25 @@ Conserved Reference::of(std::span<const BallState> balls, const Cast& cast) cons
   Conserved sum;
   for (std::size_t i = 0; i < balls.size(); ++i) {
     if (!cast[i] || !movable(*cast[i])) continue;
-    Ball ball = *cast[i];
-    ball.position = balls[i].position;
-    ball.velocity = balls[i].velocity;
-    ball.spin = balls[i].spin;
-    const Conserved one = of(ball, i);
-    sum.energy_J += one.energy_J;
-    sum.momentum_Ns += one.momentum_Ns;
-    sum.angular_momentum_Nms += one.angular_momentum_Nms;
+    add(*cast[i], balls[i], i, sum);
   }
   return sum;
 }
 
 Conserved Reference::of(const Ball& ball, std::size_t number) const {
-  if (!movable(ball)) return {};
-  const Vec3 gravity = scenario->effects.gravity.value_or(Vec3::Zero());
-  const double moment = ball.inertia * ball.mass * ball.radius * ball.radius;
   Conserved one;
-  one.energy_J = 0.5 * ball.mass * ball.velocity.squaredNorm() + 0.5 * moment * ball.spin.squaredNorm() +
-                 ball.mass * (gravity.norm() * fall_m[number] - gravity.dot(ball.position - home[number]));
-  one.momentum_Ns = ball.mass * ball.velocity;
-  one.angular_momentum_Nms = ball.mass * (ball.position - origin).cross(ball.velocity) + moment * ball.spin;
+  if (movable(ball)) add(ball, {ball.position, ball.velocity, ball.spin}, number, one);
   return one;
+}
+
+/// @pre the ball is movable
+void Reference::add(const Ball& ball, const BallState& state, std::size_t number, Conserved& sum) const {
+  const double moment = ball.inertia * ball.mass * ball.radius * ball.radius;
+  sum.energy_J += 0.5 * ball.mass * state.velocity.squaredNorm() + 0.5 * moment * state.spin.squaredNorm() +
+                  ball.mass * (strength_mps2_ * fall_m[number] - gravity_.dot(state.position - home[number]));
+  sum.momentum_Ns += ball.mass * state.velocity;
+  sum.angular_momentum_Nms +=
+      ball.mass * (state.position - origin).cross(state.velocity) + moment * state.spin;
 }
 
 }  // namespace carom

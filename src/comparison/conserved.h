@@ -48,6 +48,10 @@ struct Reference {
 
  private:
   void begin(const Ball& ball);
+  void add(const Ball& ball, const BallState& state, std::size_t number, Conserved& sum) const;
+
+  Vec3 gravity_;          ///< m/s²; zero where there is none
+  double strength_mps2_;  ///< of gravity
 };
 
 }  // namespace carom

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -23,26 +24,49 @@ constexpr std::array<std::array<std::int64_t, 2>, 4> kRowsAfter = {{{1, 0}, {-1,
 
 OverlapSearch::OverlapSearch(const Scenario& scenario) : scenario_(scenario) {
   for (const Ball& ball : scenario.balls) {
-    const bool first = largest_radius_m_ == 0.0;
+    const bool first = radii_m_.empty();
     smallest_radius_m_ = first ? ball.radius : std::min(smallest_radius_m_, ball.radius);
     largest_radius_m_ = std::max(largest_radius_m_, ball.radius);
+    radii_m_.push_back(ball.radius);
   }
 }
 
 double OverlapSearch::deepest(std::span<const BallState> balls) {
-  const double in_walls = deepest_in_walls(balls);
+  const Extent extent = extent_of(balls);
+  const double in_walls = deepest_in_walls(balls, extent);
   if (!scenario_.effects.collisions) return in_walls;
-  if (!list_holds(balls)) list(balls);
+  if (!list_holds(balls)) list(balls, extent);
   return std::max(in_walls, deepest_in_pairs(balls));
 }
 
-double OverlapSearch::deepest_in_walls(std::span<const BallState> balls) const {
+OverlapSearch::Extent OverlapSearch::extent_of(std::span<const BallState> balls) {
+  if (balls.empty()) return {Vec3::Zero(), Vec3::Zero()};
+  Extent extent{balls.front().position, balls.front().position};
+  for (const BallState& ball : balls) {
+    extent.low = extent.low.cwiseMin(ball.position);
+    extent.high = extent.high.cwiseMax(ball.position);
+  }
+  return extent;
+}
+
+/// Whether not even the corner of the box of all centres that is nearest to a wall is as near as the largest
+/// radius, by more than the rounding of n·x: three products and their sum, of which each errs by ½ ε.
+bool OverlapSearch::clear_of(const Wall& wall, const Extent& extent) const {
+  const Vec3 of_low = wall.normal.cwiseProduct(extent.low);
+  const Vec3 of_high = wall.normal.cwiseProduct(extent.high);
+  const double nearest_m = of_low.cwiseMin(of_high).sum() - wall.offset;
+  const double size_m = of_low.cwiseAbs().cwiseMax(of_high.cwiseAbs()).sum() + std::abs(wall.offset);
+  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+  return nearest_m > largest_radius_m_ + kRounding * size_m;
+}
+
+double OverlapSearch::deepest_in_walls(std::span<const BallState> balls, const Extent& extent) const {
   double deepest = 0.0;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    const double radius = scenario_.balls[i].radius;
-    for (const Wall& wall : scenario_.walls) {
-      const double overlap = radius - (wall.normal.dot(balls[i].position) - wall.offset);
-      if (overlap > 0.0) deepest = std::max(deepest, overlap / radius);
+  for (const Wall& wall : scenario_.walls) {
+    if (clear_of(wall, extent)) continue;
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      const double overlap = radii_m_[i] - (wall.normal.dot(balls[i].position) - wall.offset);
+      if (overlap > 0.0) deepest = std::max(deepest, overlap / radii_m_[i]);
     }
   }
   return deepest;
@@ -51,10 +75,10 @@ double OverlapSearch::deepest_in_walls(std::span<const BallState> balls) const {
 double OverlapSearch::deepest_in_pairs(std::span<const BallState> balls) const {
   double deepest = 0.0;
   for (const auto& [a, b] : near_) {
-    const double reach = radius(a) + radius(b);
+    const double reach = radii_m_[a] + radii_m_[b];
     const Vec3 between = balls[b].position - balls[a].position;
     if (between.squaredNorm() >= reach * reach) continue;
-    deepest = std::max(deepest, (reach - between.norm()) / std::min(radius(a), radius(b)));
+    deepest = std::max(deepest, (reach - between.norm()) / std::min(radii_m_[a], radii_m_[b]));
   }
   return deepest;
 }
@@ -68,7 +92,7 @@ bool OverlapSearch::list_holds(std::span<const BallState> balls) const {
   return true;
 }
 
-void OverlapSearch::list(std::span<const BallState> balls) {
+void OverlapSearch::list(std::span<const BallState> balls, const Extent& extent) {
   if (!listed_at_.empty()) {
     double moved_m2 = 0.0;
     for (std::size_t i = 0; i < balls.size(); ++i) {
@@ -82,8 +106,9 @@ void OverlapSearch::list(std::span<const BallState> balls) {
   listed_at_.resize(balls.size());
   for (std::size_t i = 0; i < balls.size(); ++i) listed_at_[i] = balls[i].position;
   near_.clear();
+  sorted_.resize(balls.size());
   if (largest_radius_m_ <= kMostSizeRatio * smallest_radius_m_) {
-    list_by_cells(balls);
+    list_by_cells(balls, extent);
   } else {
     list_by_sweep(balls);
   }
@@ -91,51 +116,56 @@ void OverlapSearch::list(std::span<const BallState> balls) {
 
 /// Sorts along x and looks only at balls whose extents overlap there.
 void OverlapSearch::list_by_sweep(std::span<const BallState> balls) {
-  const auto left = [&](std::uint32_t i) { return balls[i].position.x() - radius(i); };
-  order_.resize(balls.size());
-  std::iota(order_.begin(), order_.end(), 0U);
-  std::sort(order_.begin(), order_.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return left(a) < left(b); });
-  for (std::size_t p = 0; p < order_.size(); ++p) {
-    const std::uint32_t a = order_[p];
-    const double right = balls[a].position.x() + radius(a) + 2.0 * margin_m_;
-    for (std::size_t q = p + 1; q < order_.size() && left(order_[q]) < right; ++q)
-      list_if_near(a, order_[q], balls);
+  const auto left = [](const Listed& each) { return each.position.x() - each.radius; };
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    sorted_[i] = {balls[i].position, radii_m_[i], static_cast<std::uint32_t>(i)};
+  }
+  std::sort(sorted_.begin(), sorted_.end(),
+            [&](const Listed& a, const Listed& b) { return left(a) < left(b); });
+  for (std::size_t p = 0; p < sorted_.size(); ++p) {
+    const Listed& a = sorted_[p];
+    const double right = a.position.x() + a.radius + 2.0 * margin_m_;
+    for (std::size_t q = p + 1; q < sorted_.size() && left(sorted_[q]) < right; ++q)
+      list_if_near(a, sorted_[q]);
   }
 }
 
-/// Looks only at balls in the same or in neighbouring cells, x fastest: three cells in a row are one stretch
-/// of balls.
-void OverlapSearch::list_by_cells(std::span<const BallState> balls) {
-  sort_into_cells(balls);
-  const auto [columns, rows, layers] = counts_;
-  for (std::uint32_t place = 0; place < order_.size(); ++place) {
-    const std::uint32_t ball = order_[place];
-    const std::int64_t cell = cell_of_[ball];
-    const std::int64_t x = cell % columns;
-    const std::int64_t y = cell / columns % rows;
-    const std::int64_t z = cell / columns / rows;
-    const std::int64_t before = std::min<std::int64_t>(x, 1);
-    const std::int64_t after = std::min<std::int64_t>(columns - 1 - x, 1);
-    const std::uint32_t own_end = starts_[static_cast<std::size_t>(cell + after + 1)];
-    for (std::uint32_t other = place + 1; other < own_end; ++other) list_if_near(ball, order_[other], balls);
-    for (const auto& [dy, dz] : kRowsAfter) {
-      if (y + dy < 0 || y + dy >= rows || z + dz >= layers) continue;
-      const std::int64_t beside = cell + (dz * rows + dy) * columns;
-      list_with(ball, beside - before, beside + after, balls);
+/// Looks only at balls in the same or in neighbouring cells.
+void OverlapSearch::list_by_cells(std::span<const BallState> balls, const Extent& extent) {
+  sort_into_cells(balls, extent);
+  for (std::int64_t z = 0; z < counts_[2]; ++z) {
+    for (std::int64_t y = 0; y < counts_[1]; ++y) {
+      for (std::int64_t x = 0; x < counts_[0]; ++x) list_around({x, y, z});
     }
   }
 }
 
-/// Fills cell_of_, starts_ and order_: counts the balls of each cell, then puts each in its place.
-void OverlapSearch::sort_into_cells(std::span<const BallState> balls) {
-  Vec3 low = balls.empty() ? Vec3(Vec3::Zero()) : balls.front().position;
-  Vec3 high = low;
-  for (const BallState& ball : balls) {
-    low = low.cwiseMin(ball.position);
-    high = high.cwiseMax(ball.position);
+/// The pairs of the balls in a cell with each other and with those in the cells after it, so that each pair
+/// is seen once. Three cells in a row are one stretch of sorted_.
+void OverlapSearch::list_around(const Cell& cell) {
+  const auto [x, y, z] = cell;
+  const std::uint32_t first = starts_[index(cell)];
+  const std::uint32_t last = starts_[index(cell) + 1];
+  if (first == last) return;
+  const std::int64_t left = std::max<std::int64_t>(x - 1, 0);
+  const std::int64_t right = std::min(x + 1, counts_[0] - 1);
+  const std::uint32_t row_end = starts_[index({right, y, z}) + 1];
+  for (std::uint32_t a = first; a < last; ++a) {
+    for (std::uint32_t b = a + 1; b < row_end; ++b) list_if_near(sorted_[a], sorted_[b]);
   }
-  const Vec3 extent_m = high - low;
+  for (const auto& [dy, dz] : kRowsAfter) {
+    if (y + dy < 0 || y + dy >= counts_[1] || z + dz >= counts_[2]) continue;
+    const std::uint32_t begin = starts_[index({left, y + dy, z + dz})];
+    const std::uint32_t end = starts_[index({right, y + dy, z + dz}) + 1];
+    for (std::uint32_t a = first; a < last; ++a) {
+      for (std::uint32_t b = begin; b < end; ++b) list_if_near(sorted_[a], sorted_[b]);
+    }
+  }
+}
+
+/// Fills cell_of_, starts_ and sorted_: counts the balls of each cell, then puts each in its place.
+void OverlapSearch::sort_into_cells(std::span<const BallState> balls, const Extent& extent) {
+  const Vec3 extent_m = extent.high - extent.low;
   // Wider than a pair that is listed is apart, by more than what dividing by it rounds.
   double width_m = 2.0 * (largest_radius_m_ + margin_m_) * (1.0 + 1e-9);
   const auto cells = [&] { return (extent_m / width_m).array().floor() + 1.0; };
@@ -147,30 +177,24 @@ void OverlapSearch::sort_into_cells(std::span<const BallState> balls) {
   cell_of_.resize(balls.size());
   starts_.assign(static_cast<std::size_t>(counts.prod()) + 1, 0);
   for (std::size_t i = 0; i < balls.size(); ++i) {
-    const Vec3 at = (balls[i].position - low) / width_m;
-    cell_of_[i] =
-        (static_cast<std::int64_t>(at.z()) * counts_[1] + static_cast<std::int64_t>(at.y())) * counts_[0] +
-        static_cast<std::int64_t>(at.x());
-    ++starts_[static_cast<std::size_t>(cell_of_[i])];
+    const Vec3 at = (balls[i].position - extent.low) / width_m;
+    cell_of_[i] = index({static_cast<std::int64_t>(at.x()), static_cast<std::int64_t>(at.y()),
+                         static_cast<std::int64_t>(at.z())});
+    ++starts_[cell_of_[i]];
   }
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-  order_.resize(balls.size());
   for (std::size_t i = balls.size(); i-- > 0;) {
-    order_[--starts_[static_cast<std::size_t>(cell_of_[i])]] = static_cast<std::uint32_t>(i);
+    sorted_[--starts_[cell_of_[i]]] = {balls[i].position, radii_m_[i], static_cast<std::uint32_t>(i)};
   }
 }
 
-void OverlapSearch::list_with(std::uint32_t ball, std::int64_t first_cell, std::int64_t last_cell,
-                              std::span<const BallState> balls) {
-  const std::uint32_t end = starts_[static_cast<std::size_t>(last_cell + 1)];
-  for (std::uint32_t at = starts_[static_cast<std::size_t>(first_cell)]; at < end; ++at) {
-    list_if_near(ball, order_[at], balls);
-  }
+std::size_t OverlapSearch::index(const Cell& cell) const {
+  return static_cast<std::size_t>((cell[2] * counts_[1] + cell[1]) * counts_[0] + cell[0]);
 }
 
-void OverlapSearch::list_if_near(std::uint32_t a, std::uint32_t b, std::span<const BallState> balls) {
-  const double reach = radius(a) + radius(b) + 2.0 * margin_m_;
-  if ((balls[b].position - balls[a].position).squaredNorm() < reach * reach) near_.emplace_back(a, b);
+void OverlapSearch::list_if_near(const Listed& a, const Listed& b) {
+  const double reach = a.radius + b.radius + 2.0 * margin_m_;
+  if ((b.position - a.position).squaredNorm() < reach * reach) near_.emplace_back(a.ball, b.ball);
 }
 
 namespace {

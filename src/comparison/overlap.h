@@ -32,28 +32,42 @@ class OverlapSearch {
  private:
   using Cell = std::array<std::int64_t, 3>;
 
-  double deepest_in_walls(std::span<const BallState> balls) const;
+  /// The smallest box, along the axes, that the balls' centres are in.
+  struct Extent {
+    Vec3 low;
+    Vec3 high;
+  };
+  /// A ball as a list was made of it, among those that a search looks at with it.
+  struct Listed {
+    Vec3 position;
+    double radius = 0.0;
+    std::uint32_t ball = 0;
+  };
+
+  static Extent extent_of(std::span<const BallState> balls);
+  bool clear_of(const Wall& wall, const Extent& extent) const;
+  double deepest_in_walls(std::span<const BallState> balls, const Extent& extent) const;
   double deepest_in_pairs(std::span<const BallState> balls) const;
   bool list_holds(std::span<const BallState> balls) const;
-  void list(std::span<const BallState> balls);
+  void list(std::span<const BallState> balls, const Extent& extent);
   void list_by_sweep(std::span<const BallState> balls);
-  void list_by_cells(std::span<const BallState> balls);
-  void sort_into_cells(std::span<const BallState> balls);
-  void list_with(std::uint32_t ball, std::int64_t first_cell, std::int64_t last_cell,
-                 std::span<const BallState> balls);
-  void list_if_near(std::uint32_t a, std::uint32_t b, std::span<const BallState> balls);
-  double radius(std::uint32_t ball) const { return scenario_.balls[ball].radius; }
+  void list_by_cells(std::span<const BallState> balls, const Extent& extent);
+  void sort_into_cells(std::span<const BallState> balls, const Extent& extent);
+  void list_around(const Cell& cell);
+  std::size_t index(const Cell& cell) const;
+  void list_if_near(const Listed& a, const Listed& b);
 
   const Scenario& scenario_;
+  std::vector<double> radii_m_;
   double smallest_radius_m_ = 0.0;
   double largest_radius_m_ = 0.0;
   double margin_m_ = 0.0;
   std::vector<Vec3> listed_at_;  ///< where the balls were when the list was made; empty before the first
   std::vector<std::pair<std::uint32_t, std::uint32_t>> near_;
   // What listing works in, kept from one time to the next.
-  std::vector<std::uint32_t> order_;   ///< the balls, along x or by cell
-  std::vector<std::int64_t> cell_of_;  ///< by ball
-  std::vector<std::uint32_t> starts_;  ///< of each cell in order_, and the end
+  std::vector<Listed> sorted_;         ///< the balls, along x or by cell
+  std::vector<std::size_t> cell_of_;   ///< by ball
+  std::vector<std::uint32_t> starts_;  ///< of each cell in sorted_, x fastest, and the end
   Cell counts_{};                      ///< of cells along each axis
 };
 

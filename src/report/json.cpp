@@ -162,11 +162,13 @@ Json final_states(const Scenario& scene, const Trajectory& trajectory, bool all_
       json.push_back(nullptr);  // gone; the others keep their places, which are their numbers
       continue;
     }
-    json.push_back({{"mass", number_or_null(cast[i]->mass)},
-                    {"radius", cast[i]->radius},
-                    {"position", vector(balls[i].position)},
-                    {"velocity", vector(balls[i].velocity)},
-                    {"spin", vector(balls[i].spin)}});
+    // Key by key: a list in braces is copied twice before it is an object, and there are many.
+    Json& ball = json.emplace_back(Json::object());
+    ball["mass"] = number_or_null(cast[i]->mass);
+    ball["radius"] = cast[i]->radius;
+    ball["position"] = vector(balls[i].position);
+    ball["velocity"] = vector(balls[i].velocity);
+    ball["spin"] = vector(balls[i].spin);
   }
   return json;
 }

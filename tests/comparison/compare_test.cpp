@@ -206,9 +206,13 @@ TEST(Compare, Escaped_CountsBallsWhoseCentreWasBehindAWall) {
   EXPECT_EQ(*compared(scene, straight()).runs[0].metrics[Metric::escaped], 0.0);
 }
 
-double deepest_of_all_pairs(const Scenario& scene, const std::vector<BallState>& states) {
+double deepest_of_all(const Scenario& scene, const std::vector<BallState>& states) {
   double deepest = 0.0;
   for (std::size_t a = 0; a < states.size(); ++a) {
+    for (const Wall& wall : scene.walls) {
+      const double gap = wall.normal.dot(states[a].position) - wall.offset;
+      deepest = std::max(deepest, (scene.balls[a].radius - gap) / scene.balls[a].radius);
+    }
     for (std::size_t b = a + 1; b < states.size(); ++b) {
       const double reach = scene.balls[a].radius + scene.balls[b].radius;
       const double overlap = reach - (states[a].position - states[b].position).norm();
@@ -218,8 +222,9 @@ double deepest_of_all_pairs(const Scenario& scene, const std::vector<BallState>&
   return deepest;
 }
 
-// Alike or not in size, still or fast, few cells or many: the pairs are searched for in different ways.
-TEST(OverlapSearch, AgreesWithLookingAtAllPairs_FrameAfterFrame) {
+// Alike or not in size, still or fast, few cells or many, a wall that some touch, that one all but touches or
+// that is far: they are searched for in different ways.
+TEST(OverlapSearch, AgreesWithLookingAtAllPairsAndWalls_FrameAfterFrame) {
   Random random(3);
   for (int trial = 0; trial < 60; ++trial) {
     const int dimension = trial % 2 == 0 ? 2 : 3;
@@ -234,10 +239,18 @@ TEST(OverlapSearch, AgreesWithLookingAtAllPairs_FrameAfterFrame) {
       ball.velocity = random_vector(random, dimension, 1.0);
       scene.balls.push_back(ball);
     }
+    if (trial % 4 == 0) scene.balls.resize(2);  // so few that a wall's overlap may be the deepest
+    const Vec3 normal = random_vector(random, dimension, 1.0).normalized();
+    double lowest_m = std::numeric_limits<double>::infinity();
+    for (const Ball& ball : scene.balls)
+      lowest_m = std::min(lowest_m, normal.dot(ball.position) - ball.radius);
+    for (const double below_m : {trial % 3 == 0 ? -0.1 : 1e-15, 3.0}) {
+      scene.walls.push_back({normal, lowest_m - below_m});
+    }
     OverlapSearch search(scene);
     std::vector<BallState> states = states_of(scene);
     for (int frame = 0; frame < 12; ++frame) {
-      EXPECT_DOUBLE_EQ(search.deepest(states), deepest_of_all_pairs(scene, states)) << trial << " " << frame;
+      EXPECT_DOUBLE_EQ(search.deepest(states), deepest_of_all(scene, states)) << trial << " " << frame;
       for (BallState& state : states) state.position += way_m * state.velocity;
     }
   }

@@ -63,8 +63,10 @@ void measure_contact(const Yardstick& yardstick, RunComparison& result) {
     cast.to_frame(static_cast<std::int64_t>(k));
     places.to_frame(k);
     const auto balls = trajectory.frame(k);
-    deepest =
-        std::max(deepest, scene.events.empty() ? search.deepest(balls) : deepest_overlap(scene, cast, balls));
+    const double overlap = scene.events.empty() ? search.deepest(balls) : deepest_overlap(scene, cast, balls);
+    deepest = std::max(deepest, overlap);
+    // A ball behind a wall overlaps it by its radius or more.
+    if (overlap < 1.0 && scene.slabs.empty()) continue;
     for (std::size_t i = 0; i < balls.size(); ++i) {
       if (cast[i] && behind_something(scene, places[i], balls[i].position)) outside[i] = true;
     }

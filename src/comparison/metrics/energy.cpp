@@ -33,6 +33,8 @@ void measure_energy(const Yardstick& yardstick, const std::vector<Conserved>& co
   const Scenario& scene = yardstick.scene();
   const double start_J = yardstick.reference().start.energy_J;
   const std::vector<Conserved> brought = brought_by_events(yardstick.reference(), result.run);
+  const bool work_unknown = moving_immovable(scene);
+  const bool heat = dissipates(scene);
   std::vector<double> gains;
   std::vector<double> losses;
   double lowest_J = start_J;
@@ -42,8 +44,8 @@ void measure_energy(const Yardstick& yardstick, const std::vector<Conserved>& co
     if (yardstick.truth_known_at(k)) {
       gains.push_back(yardstick.by_energy(yardstick.energy_off_truth(conserved[k], k)));
       losses.push_back(-gains.back());
-    } else if (!moving_immovable(scene)) {
-      if (dissipates(scene)) {
+    } else if (!work_unknown) {
+      if (heat) {
         gains.push_back(yardstick.by_energy(energy_J - lowest_J));
       } else {
         gains.push_back(yardstick.by_energy(energy_J - start_J));
