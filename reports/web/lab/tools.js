@@ -39,9 +39,15 @@ export class Tools {
   say() {
     const { lab } = language.words;
     this.legend.textContent = lab.click;
-    for (const { tool, text } of this.radios) text.textContent = lab.tools[tool];
+    for (const { tool, text, label } of this.radios) {
+      text.textContent = lab.tools[tool];
+      label.title = lab.byHowMuch[tool] ?? "";
+    }
     this.ballName.textContent = lab.ball;
-    for (const { name, made } of this.changes) made.textContent = lab[name];
+    for (const { name, made } of this.changes) {
+      made.textContent = lab[name];
+      made.title = lab.byHowMuch[name];
+    }
   }
 
   /** @param count  how many balls there are to choose from */
