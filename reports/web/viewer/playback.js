@@ -1,7 +1,9 @@
 // Reads what src/report/playback.h writes. Runs in browsers and in node.
 
 async function inflate(text) {
-  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const letters = atob(text);
+  const packed = new Uint8Array(letters.length);
+  for (let i = 0; i < letters.length; i += 1) packed[i] = letters.charCodeAt(i);
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -57,31 +59,26 @@ async function unpackPositions(text, velocities, { frames, balls, axes, grid, ti
   const missed = await unpackIntegers(text);
   const states = new Float64Array(3 * frames * balls);
   const farthest = 2 ** 29 * grid;
+  const jump = new Float64Array(axes.length);
   for (let i = 0; i < balls; i += 1) {
-    for (let k = 0; k < frames; k += 1) {
+    axes.forEach((axis, place) => { states[3 * i + axis] = missed[(place * balls + i) * frames] * grid; });
+    for (let k = 1; k < frames; k += 1) {
+      const h = times[k] - times[k - 1];
       const to = 3 * (k * balls + i);
       const from = to - 3 * balls;
-      const off = (place) => missed[(place * balls + i) * frames + k] * grid;
-      if (k === 0) {
-        axes.forEach((axis, place) => { states[to + axis] = off(place); });
-        continue;
-      }
-      const h = times[k] - times[k - 1];
-      const jump = (axis) => velocities[to + axis] - velocities[from + axis];
       let lead = 0;
-      for (let place = 1; place < axes.length; place += 1) {
-        if (Math.abs(jump(axes[place])) > Math.abs(jump(axes[lead]))) lead = place;
-      }
-      const fly = (place, aside) => {
-        const axis = axes[place];
-        const flight = 0.5 * h * (velocities[from + axis] + velocities[to + axis]) + aside;
-        states[to + axis] = states[from + axis] + Math.min(Math.max(flight, -farthest), farthest) + off(place);
-      };
-      fly(lead, 0);
-      const most = jump(axes[lead]);
-      const once = most !== 0 && Math.abs(off(lead)) <= 0.5 * h * Math.abs(most) + grid;
       for (let place = 0; place < axes.length; place += 1) {
-        if (place !== lead) fly(place, once ? off(lead) * (jump(axes[place]) / most) : 0);
+        jump[place] = velocities[to + axes[place]] - velocities[from + axes[place]];
+        if (Math.abs(jump[place]) > Math.abs(jump[lead])) lead = place;
+      }
+      const first = missed[(lead * balls + i) * frames + k] * grid;
+      const once = jump[lead] !== 0 && Math.abs(first) <= 0.5 * h * Math.abs(jump[lead]) + grid;
+      for (let place = 0; place < axes.length; place += 1) {
+        const axis = axes[place];
+        const aside = once && place !== lead ? first * (jump[place] / jump[lead]) : 0;
+        const flight = 0.5 * h * (velocities[from + axis] + velocities[to + axis]) + aside;
+        states[to + axis] = states[from + axis] + Math.min(Math.max(flight, -farthest), farthest)
+          + missed[(place * balls + i) * frames + k] * grid;
       }
     }
   }
