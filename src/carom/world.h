@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "carom/large_pages.h"
 #include "carom/threads.h"
+#include "core/large_pages.h"
 #include "core/vec.h"
 #include "engine/engine.h"
 #include "scenario/scenario.h"

@@ -25,16 +25,17 @@ struct LargePages {
 
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
-    void* const block = ::operator new(bytes);
+    void* const block = ::operator new(bytes, kAlignment);
     if (bytes >= kLarge) ask_for_large_pages(block, bytes);
     return static_cast<T*>(block);
   }
 
-  void deallocate(T* block, std::size_t /*count*/) { ::operator delete(block); }
+  void deallocate(T* block, std::size_t /*count*/) { ::operator delete(block, kAlignment); }
 
   friend bool operator==(const LargePages& /*a*/, const LargePages& /*b*/) { return true; }
 
  private:
+  static constexpr std::align_val_t kAlignment{alignof(T)};
   /// Smaller columns lie in few pages of any size. From here on neighbouring columns share large pages.
   static constexpr std::size_t kLarge = std::size_t{256} * 1024;
 
