@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "carom/shared_column.h"
 #include "carom/threads.h"
 #include "core/large_pages.h"
 #include "core/vec.h"
@@ -88,16 +89,7 @@ class VectorColumn {
 
   /// Place k takes what stood at order[k]. @param spare  for use meanwhile
   void reorder(std::span<const std::uint32_t> order, Column<double>& spare, const Threads& threads) {
-    for (Column<double>& axis : axes_) reordered(axis, order, spare, threads);
-  }
-
-  static void reordered(Column<double>& column, std::span<const std::uint32_t> order, Column<double>& spare,
-                        const Threads& threads) {
-    spare.resize(order.size());
-    threads.in_parallel(order.size(), [&](std::size_t first, std::size_t end) {
-      for (std::size_t k = first; k < end; ++k) spare[k] = column[order[k]];
-    });
-    column.swap(spare);
+    for (Column<double>& axis : axes_) carom::reorder(axis, order, spare, threads);
   }
 
   std::span<double> axis(int axis) { return axes_[static_cast<std::size_t>(axis)]; }
@@ -127,22 +119,22 @@ template <int Dim>
 struct World {
   VectorColumn<Dim> position;         ///< m
   VectorColumn<Dim> velocity;         ///< m/s
-  Column<double> radius;              ///< m
-  Column<double> inverse_mass;        ///< 1/kg, 0 for an immovable ball
+  SharedColumn radius;                ///< m
+  SharedColumn inverse_mass;          ///< 1/kg, 0 for an immovable ball
   VectorColumn<kSpinAxes<Dim>> spin;  ///< rad/s; empty without effects.spin
   Column<double> inverse_inertia;     ///< 1/(kg m²), 0 for an immovable ball; empty without effects.spin
   /// The scene's number of the ball at each place, see reorder(); empty while it is the place.
   Column<std::uint32_t> number;
 
   explicit World(const std::vector<Ball>& balls, bool spins = false)
-      : position(balls.size()), velocity(balls.size()), spin(spins ? balls.size() : 0) {
-    radius.reserve(balls.size());
-    inverse_mass.reserve(balls.size());
+      : position(balls.size()),
+        velocity(balls.size()),
+        radius(balls.size(), [&balls](std::size_t i) { return balls[i].radius; }),
+        inverse_mass(balls.size(), [&balls](std::size_t i) { return 1.0 / balls[i].mass; }),
+        spin(spins ? balls.size() : 0) {
     for (std::size_t i = 0; i < balls.size(); ++i) {
       position.set(i, flattened<Dim>(balls[i].position));
       velocity.set(i, flattened<Dim>(balls[i].velocity));
-      radius.push_back(balls[i].radius);
-      inverse_mass.push_back(1.0 / balls[i].mass);
     }
     if (!spins) return;
     inverse_inertia.reserve(balls.size());
@@ -163,16 +155,7 @@ struct World {
 
   /// Puts the ball at place order[k] to place k: balls that lie side by side in memory are loaded together.
   void reorder(std::span<const std::uint32_t> order, const Threads& threads) {
-    Column<double> spare;
-    position.reorder(order, spare, threads);
-    velocity.reorder(order, spare, threads);
-    for (auto* column : {&radius, &inverse_mass}) {
-      VectorColumn<Dim>::reordered(*column, order, spare, threads);
-    }
-    if (spins()) {
-      spin.reorder(order, spare, threads);
-      VectorColumn<Dim>::reordered(inverse_inertia, order, spare, threads);
-    }
+    reorder_columns(order, threads);
     Column<std::uint32_t> numbers(order.size());
     threads.in_parallel(order.size(), [&](std::size_t first, std::size_t end) {
       for (std::size_t k = first; k < end; ++k) numbers[k] = number_of(order[k]);
@@ -186,6 +169,18 @@ struct World {
     }
     if (!spins()) return;
     for (std::size_t i = 0; i < size(); ++i) balls[number_of(i)].spin = widened_spin<Dim>(spin[i]);
+  }
+
+ private:
+  void reorder_columns(std::span<const std::uint32_t> order, const Threads& threads) {
+    Column<double> spare;
+    position.reorder(order, spare, threads);
+    velocity.reorder(order, spare, threads);
+    radius.reorder(order, spare, threads);
+    inverse_mass.reorder(order, spare, threads);
+    if (!spins()) return;
+    spin.reorder(order, spare, threads);
+    carom::reorder(inverse_inertia, order, spare, threads);
   }
 };
 

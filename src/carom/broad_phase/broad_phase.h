@@ -46,8 +46,9 @@ class BroadPhase {
   virtual void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const = 0;
 
   /// Replaces `balls` by all balls in an order in which neighbours stand together; by none where the broad
-  /// phase has no such order. @pre build() was called
-  virtual void find_order(Column<std::uint32_t>& balls) const = 0;
+  /// phase has no such order. What it was built from may go with it: it has to be built anew. @pre build()
+  /// was called
+  virtual void hand_over_order(Column<std::uint32_t>& balls) = 0;
 };
 
 /// A broad phase as an evolver takes it, made from one that visits.
@@ -90,9 +91,9 @@ class BroadPhaseOf final : public BroadPhase<Dim> {
         ball, [&others](std::size_t other) { others.push_back(static_cast<std::uint32_t>(other)); });
   }
 
-  void find_order(Column<std::uint32_t>& balls) const override {
+  void hand_over_order(Column<std::uint32_t>& balls) override {
     balls.clear();
-    if constexpr (requires { visitor_.find_order(balls); }) visitor_.find_order(balls);
+    if constexpr (requires { visitor_.hand_over_order(balls); }) visitor_.hand_over_order(balls);
   }
 
  private:

@@ -80,7 +80,7 @@ class PairList {
     if (builds_in_this_order_ < kBuildsInAnOrder || bound_.empty()) return false;
     builds_in_this_order_ = 0;
     Column<std::uint32_t> order;
-    broad_phase_->find_order(order);
+    broad_phase_->hand_over_order(order);
     if (order.empty()) return false;
     world.reorder(order, threads_);
     enough_m_ = kNothingHolds;
@@ -133,7 +133,7 @@ class PairList {
     if (skin_ == PairSkin::kNone || world.size() == 0) return;
     if (half_skin_m_ == 0.0) {
       double radii = 0.0;
-      for (const double radius : world.radius) radii += radius;
+      for (std::size_t i = 0; i < world.size(); ++i) radii += world.radius[i];
       diameter_m_ = 2.0 * radii / static_cast<double>(world.size());
       half_skin_m_ = 0.5 * kFirstGuess * diameter_m_;
       return;

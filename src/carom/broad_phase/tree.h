@@ -84,7 +84,7 @@ class Tree {
   }
 
   /// Node by node, each before those below it: balls that are found together stand together.
-  void find_order(Column<std::uint32_t>& balls) const {
+  void hand_over_order(Column<std::uint32_t>& balls) const {
     for (const Item& item : items_) balls.push_back(item.ball);
   }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "carom/broad_phase/count.h"
@@ -94,7 +95,11 @@ class WrappedGrid {
   }
 
   /// Cell by cell.
-  void find_order(Column<std::uint32_t>& balls) const { balls = ball_at_; }
+  void hand_over_order(Column<std::uint32_t>& balls) {
+    balls = std::move(ball_at_);
+    ball_at_ = {};
+    start_ = {};
+  }
 
   const Count& count() const { return count_; }
 

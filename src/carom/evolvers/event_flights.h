@@ -38,7 +38,7 @@ class EventFlights {
     }
     name_.resize(world.size());
     std::iota(name_.begin(), name_.end(), 0U);
-    inverse_mass_ = world.inverse_mass;
+    inverse_mass_ = world.inverse_mass.each();
     inverse_inertia_ = world.inverse_inertia;
     spin_ = world.spin;
     if constexpr (kGravity) prepare_gravity(scene);
@@ -223,9 +223,9 @@ class EventFlights {
 
   void load(std::size_t slot, std::uint32_t ball) {
     pair_.velocity.set(slot, bodies_[ball].v);
-    pair_.inverse_mass[slot] = inverse_mass_[ball];
+    pair_.inverse_mass.set(slot, inverse_mass_[ball]);
     if (!pair_.spins()) return;
-    pair_.radius[slot] = bodies_[ball].radius;
+    pair_.radius.set(slot, bodies_[ball].radius);
     pair_.spin.set(slot, spin_[ball]);
     pair_.inverse_inertia[slot] = inverse_inertia_[ball];
   }

@@ -44,7 +44,7 @@ class EventPlans {
         queue_(scene.balls.size()) {
     if (scene.effects.collisions) {
       const World<Dim> world(scene.balls);
-      cells_.emplace(world.position, world.radius);
+      cells_.emplace(world.position, world.radius.each());
       near_.resize(scene.balls.size() + 1);
     }
     for (std::uint32_t ball = 0; ball < balls(); ++ball) plan_flight(ball);
