@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "core/error.h"
+#include "core/heap.h"
 
 namespace carom {
 
@@ -53,5 +54,6 @@ int run_and_flush(int argc, char** argv) {
 }  // namespace carom
 
 int main(int argc, char** argv) {
+  carom::give_large_blocks_back();
   return carom::run_and_flush(argc, argv);
 }

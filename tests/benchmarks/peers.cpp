@@ -19,6 +19,7 @@
 #include "carom/carom_engine.h"
 #include "core/error.h"
 #include "core/files.h"
+#include "core/heap.h"
 #include "core/least_squares.h"
 #include "scenario/parse.h"
 #include "tests/benchmarks/speed/processes.h"
@@ -348,6 +349,7 @@ int run(const std::vector<std::string>& words) {
 }  // namespace carom::benchmark
 
 int main(int argc, char** argv) {
+  carom::give_large_blocks_back();  // as the program does
   try {
     return carom::benchmark::run({argv + 1, argv + argc});
   } catch (const std::exception& error) {
