@@ -25,17 +25,28 @@ struct LargePages {
 
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
-    void* const block = ::operator new(bytes, kAlignment);
+    void* block = nullptr;
+    if constexpr (kOverAligned) {
+      block = ::operator new (bytes, std::align_val_t{alignof(T)});
+    } else {
+      block = ::operator new(bytes);
+    }
     if (bytes >= kLarge) ask_for_large_pages(block, bytes);
     return static_cast<T*>(block);
   }
 
-  void deallocate(T* block, std::size_t /*count*/) { ::operator delete(block, kAlignment); }
+  void deallocate(T* block, std::size_t /*count*/) {
+    if constexpr (kOverAligned) {
+      ::operator delete (block, std::align_val_t{alignof(T)});
+    } else {
+      ::operator delete(block);
+    }
+  }
 
   friend bool operator==(const LargePages& /*a*/, const LargePages& /*b*/) { return true; }
 
  private:
-  static constexpr std::align_val_t kAlignment{alignof(T)};
+  static constexpr bool kOverAligned = alignof(T) > __STDCPP_DEFAULT_NEW_ALIGNMENT__;
   /// Smaller columns lie in few pages of any size. From here on neighbouring columns share large pages.
   static constexpr std::size_t kLarge = std::size_t{256} * 1024;
 

@@ -146,14 +146,13 @@ class PackedFlight {
  public:
   PackedFlight(std::span<const int> axes, const Grids& grids) : axes_(axes), grids_(grids) {}
 
-  /// Goes on to a ball's next frame. @param state  nothing: the ball is not there, and stays where it was
+  /// Goes on to a ball's next frame. @param state  nothing: the ball is not there, and is held where it was
   /// @returns for each axis by how many grids the flight misses it
   Eigen::Array<std::int32_t, 3, 1> next(const BallState* state, double interval_s) {
     Vec3 after = v_;
-    Vec3 wanted = x_;
     if (state != nullptr) {
       for (const int c : axes_) after[c] = on_grid(state->velocity[c], grids_.speed_mps) * grids_.speed_mps;
-      wanted = state->position;
+      wanted_ = state->position;
     }
     // |x| is at most this on its grid, so three of them, x and x' and the flight, fit into 31 bits.
     const double farthest = kLargest * grids_.position_m;
@@ -165,16 +164,17 @@ class PackedFlight {
     Eigen::Array<std::int32_t, 3, 1> off = {0, 0, 0};
     const auto fly = [&](int c, double aside) {
       x_[c] += std::clamp(0.5 * interval_s * (v_[c] + after[c]) + aside, -farthest, farthest);
-      off[c] = static_cast<std::int32_t>(on_grid(wanted[c] - x_[c], grids_.position_m));
+      off[c] = static_cast<std::int32_t>(on_grid(wanted_[c] - x_[c], grids_.position_m));
       x_[c] += off[c] * grids_.position_m;
     };
     fly(lead, 0.0);
     // Where the velocity jumps once, at a time t of its interval h, the flight misses by (h/2 - t) times the
     // jump.
     const double missed = off[lead] * grids_.position_m;
-    const bool once = std::abs(missed) <= 0.5 * interval_s * std::abs(jump[lead]) + grids_.position_m;
+    const bool once = interval_s > 0.0 && jump[lead] != 0.0 && std::isfinite(jump[lead]) &&
+                      std::abs(missed) <= 0.5 * interval_s * std::abs(jump[lead]) + grids_.position_m;
     for (const int c : axes_) {
-      if (c != lead) fly(c, once && jump[lead] != 0.0 ? missed * (jump[c] / jump[lead]) : 0.0);
+      if (c != lead) fly(c, once ? missed * (jump[c] / jump[lead]) : 0.0);
     }
     v_ = after;
     return off;
@@ -183,8 +183,9 @@ class PackedFlight {
  private:
   std::span<const int> axes_;
   Grids grids_;
-  Vec3 x_ = Vec3::Zero();
-  Vec3 v_ = Vec3::Zero();
+  Vec3 wanted_ = Vec3::Zero();  ///< m, where the ball was last
+  Vec3 x_ = Vec3::Zero();       ///< m, where it is unpacked
+  Vec3 v_ = Vec3::Zero();       ///< m/s
 };
 
 /// Positions as packed integers: by how many grids the flight from the frame before misses them.

@@ -199,7 +199,7 @@ Generator read_generator(Reader& reader, const Scenario& scene, const SceneOptio
 void check_count(const Reader& reader, std::string_view key, std::size_t before, std::size_t more,
                  const SceneOptions& options) {
   if (before <= options.most_balls && more <= options.most_balls - before) return;
-  reader.fail(key, fmt::format("found {} {} beside {} others, allowed: at most {} balls in all", more,
+  reader.fail(key, fmt::format("found {} {} beside {} others, allowed here: at most {} balls in all", more,
                                more == 1 ? "ball" : "balls", before, options.most_balls));
 }
 

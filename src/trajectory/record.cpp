@@ -48,6 +48,7 @@ std::unique_ptr<Simulation> create(const Engine& engine, const EngineChoice& cho
 void simulate(const Scenario& scenario, const StagedRun::Create& create, Trajectory& trajectory,
               Json& result) {
   // Left standing: the process that records ends with it, and an engine of many balls is long in taking down.
+  // What it recorded is there by then, whatever an engine would do in its destructor.
   StagedRun& run = *std::make_unique<StagedRun>(scenario, create).release();
   double cpu_seconds = 0.0;
   std::int64_t steps = 0;

@@ -413,8 +413,7 @@ TEST(Parse, Options_ReplaceStepAndSeed) {
   EXPECT_NE(gas_with_seed(8), gas_with_seed(7));
 }
 
-// Ten million balls that do not fit: placing them would say so, and take its time; their number is known
-// first.
+// Placing ten million balls takes its time; their number is known first.
 TEST(Parse, MoreBallsThanTheReaderTakes_AreRefusedBeforeOneIsPlaced) {
   const std::string far_ball = "[[ball]]\nmass = 1\nradius = 0.1\nposition = [5, 5]\n";
   const std::string box = kMinimal + "[box]\nmin = [-4, -4]\nmax = [9, 9]\n" + far_ball;
@@ -431,10 +430,14 @@ TEST(Parse, MoreBallsThanTheReaderTakes_AreRefusedBeforeOneIsPlaced) {
     return "";
   };
   EXPECT_EQ(parse_scene(box + lattice("10"), "scene.toml", {{}, {}, {}, 12})->balls.size(), 12U);
-  EXPECT_THAT(refused(box + lattice("11")),
-              HasSubstr("balls[0].count: found 11 balls beside 2 others, allowed: at most 12 balls in all"));
-  EXPECT_THAT(refused(box + lattice("9") + lattice("10000000")),
-              HasSubstr("balls[1].count: found 10000000 balls beside 11 others, allowed: at most 12"));
+  EXPECT_THAT(
+      refused(box + lattice("11")),
+      HasSubstr("balls[0].count: found 11 balls beside 2 others, allowed here: at most 12 balls in all"));
+  // The first table would not fit, the second is too many: that is told first, so nothing was placed.
+  const std::string too_wide = "[[balls]]\nkind = \"gas\"\nradius = 50\nmass = 1\ncount = 9\n";
+  EXPECT_THAT(refused(box + too_wide), Not(HasSubstr("balls in all")));
+  EXPECT_THAT(refused(box + too_wide + lattice("10000000")),
+              HasSubstr("balls[1].count: found 10000000 balls beside 11 others, allowed here: at most 12"));
   const std::string added =
       "[[event]]\ntime = 0.5\nadd_ball = { mass = 1.0, radius = 0.1, position = [8, 8] }\n";
   EXPECT_THAT(refused(box + lattice("9") + added + added),

@@ -74,9 +74,14 @@ class Lab {
   async openMode(id) {
     if (!id) return;
     this.wanted = id;
+    clearTimeout(this.choosing);
     await this.guarded(async () => {
       if (this.wanted !== id) return; // somebody goes through the list, and is farther by now
-      const { toml } = await api.scene(id);
+      const { toml } = await api.scene(id).catch((error) => {
+        this.wanted = this.id;
+        this.say();
+        throw error;
+      });
       this.id = id;
       this.history = [];
       this.law = null;
@@ -102,6 +107,8 @@ class Lab {
   }
 
   async openShared({ toml, engines, law, id }) {
+    this.wanted = id;
+    clearTimeout(this.choosing);
     await this.guarded(async () => {
       this.id = id;
       this.chosen = engines ?? this.chosen;
@@ -160,12 +167,12 @@ class Lab {
     this.chosen = labels;
     this.before = null;
     clearTimeout(this.choosing);
-    this.choosing = setTimeout(() => this.runChosen(labels), kGoing_ms);
+    this.choosing = setTimeout(() => this.runChosen(), kGoing_ms);
   }
 
-  runChosen(labels) {
+  runChosen() {
     return this.guarded(async () => {
-      await this.run(this.toml, { engines: labels });
+      await this.run(this.toml, {});
       this.tell(this.viewer.labels.filter(Boolean).map((label) => language.words.label(label)).join(", "));
     });
   }
@@ -249,7 +256,7 @@ class Lab {
     this.skip.textContent = lab.skip;
     this.lawBox.say();
     this.sceneBox.say();
-    this.menu.say(this.wanted ?? this.id);
+    this.menu.say(this.wanted);
     this.tools.say();
     this.tools.show(this.viewer?.playback.balls.shown ?? 0);
     const mode = this.modes.find(({ id }) => id === this.id);

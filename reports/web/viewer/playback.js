@@ -72,7 +72,7 @@ async function unpackPositions(text, velocities, { frames, balls, axes, grid, ti
         if (Math.abs(jump[place]) > Math.abs(jump[lead])) lead = place;
       }
       const first = missed[(lead * balls + i) * frames + k] * grid;
-      const once = jump[lead] !== 0 && Math.abs(first) <= 0.5 * h * Math.abs(jump[lead]) + grid;
+      const once = jump[lead] !== 0 && Number.isFinite(jump[lead]) && Math.abs(first) <= 0.5 * h * Math.abs(jump[lead]) + grid;
       for (let place = 0; place < axes.length; place += 1) {
         const axis = axes[place];
         const aside = once && place !== lead ? first * (jump[place] / jump[lead]) : 0;

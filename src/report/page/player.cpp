@@ -24,6 +24,8 @@ int rank(const Run& run) {
   return run.profile == "faithful" ? 1 : 2;
 }
 
+/// Fewer would be fewer than 22 frames of a thousand balls; what does not fit then is left out, and said to
+/// be.
 constexpr std::size_t kFewestStates = 22000;
 
 PlaybackText playback_of(const SceneComparison& scene, const std::vector<const Run*>& runs) {

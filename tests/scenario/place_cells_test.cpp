@@ -1,0 +1,115 @@
+#include "scenario/place_cells.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "tests/support/numbers.h"
+#include "tests/support/scenes.h"
+
+namespace carom::test {
+namespace {
+
+/// A box with balls at random in it, a few of them fixed outside of it; some taken out and put in again.
+struct Crowd {
+  Crowd(Random& random, int axes, const Vec3& corner, const Vec3& sides, std::size_t count, double smallest,
+        double largest)
+      : dimension(axes), box{corner, corner + sides}, cells(box, axes, count, largest) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      balls.push_back({somewhere(random), random.uniform(smallest, largest), 0});
+      cells.insert(i, balls);
+    }
+    for (std::uint32_t i = 0; i < count; i += 3) {
+      cells.remove(i, balls);
+      balls[i].position = somewhere(random);
+      balls[i].size *= 0.5;
+      cells.insert(i, balls);
+    }
+  }
+
+  /// Mostly in the box, now and then beside it.
+  Vec3 somewhere(Random& random) const {
+    Vec3 at = box.min;
+    for (int axis = 0; axis < dimension; ++axis) {
+      at[axis] += random.uniform(-0.05, 1.05) * (box.max[axis] - box.min[axis]);
+    }
+    return at;
+  }
+
+  int dimension;
+  Box box;
+  Column<Placed> balls;
+  Cells cells;
+};
+
+/// Boxes near and far from zero, wide, flat and thin, with balls of one size and of sizes mixed 1:30.
+std::vector<Crowd> crowds(Random& random) {
+  std::vector<Crowd> all;
+  for (const Vec3& sides : {Vec3(10.0, 10.0, 10.0), Vec3(40.0, 30.0, 0.5), Vec3(300.0, 0.5, 0.6)}) {
+    for (const Vec3& corner : {Vec3(Vec3::Zero()), Vec3(-3e4, 1e5, 7e3)}) {
+      for (const double smallest : {0.25, 0.01}) {
+        for (const int dimension : {2, 3}) {
+          const Vec3 from = dimension == 2 ? Vec3(corner.x(), corner.y(), 0.0) : corner;
+          const Vec3 along = dimension == 2 ? Vec3(sides.x(), sides.y(), 0.0) : sides;
+          all.emplace_back(random, dimension, from, along, 300, smallest, 0.3);
+        }
+      }
+    }
+  }
+  return all;
+}
+
+TEST(Cells, NearVisitsAllThatALookAtEveryBallFinds_OrEndsAtOneThatOverlaps) {
+  Random random(31);
+  int through = 0;
+  int ended = 0;
+  for (const Crowd& crowd : crowds(random)) {
+    const auto count = static_cast<std::uint32_t>(crowd.balls.size());
+    for (std::uint32_t ball = 0; ball < count; ball += 2) {
+      const Vec3 at = crowd.somewhere(random);
+      const double room = random.uniform(0.0, 1.0);
+      std::set<std::uint32_t> visited;
+      const bool all = crowd.cells.near(at, ball, room, crowd.balls, [&](std::uint32_t other) {
+        visited.insert(other);
+        return true;
+      });
+      bool overlaps = false;
+      for (std::uint32_t other = 0; other < count; ++other) {
+        if (other == ball) continue;
+        const double far = (crowd.balls[other].position - at).norm();
+        overlaps = overlaps || far < crowd.balls[ball].size + crowd.balls[other].size;
+        if (all && far - crowd.balls[other].size <= room) EXPECT_EQ(visited.count(other), 1U) << other;
+      }
+      if (!all) EXPECT_TRUE(overlaps);
+      ++(all ? through : ended);
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(through, 100);
+  EXPECT_GT(ended, 100);
+}
+
+TEST(Cells, AroundVisitsWhoALookAtEveryBallFinds) {
+  Random random(32);
+  std::size_t found = 0;
+  for (const Crowd& crowd : crowds(random)) {
+    const Grid other(crowd.box, crowd.dimension, random.uniform(0.5, 3.0), 64.0);
+    for (int trial = 0; trial < 20; ++trial) {
+      const Vec3 at = crowd.somewhere(random);
+      std::multiset<std::uint32_t> visited;
+      crowd.cells.around(at, other, crowd.balls, [&](std::uint32_t ball) { visited.insert(ball); });
+      std::multiset<std::uint32_t> beside;
+      for (std::uint32_t ball = 0; ball < crowd.balls.size(); ++ball) {
+        if (other.beside(other.place(at), crowd.balls[ball].position)) beside.insert(ball);
+      }
+      EXPECT_EQ(visited, beside);
+      found += beside.size();
+    }
+  }
+  EXPECT_GT(found, 1000U);
+}
+
+}  // namespace
+}  // namespace carom::test
