@@ -150,7 +150,7 @@ class PairTrial {
   Measured measure(LawRule rule) const {
     switch (rule) {
       case LawRule::momentum:
-        return {(momentum(after_) - momentum(pair_)).norm() / momentum_scale(pair_)};
+        return change(momentum(after_), momentum(pair_), momentum_scale(after_), momentum_scale(pair_));
       case LawRule::energy_elastic:
         return energy_elastic();
       case LawRule::energy_never_won:
@@ -162,7 +162,8 @@ class PairTrial {
       case LawRule::pushing:
         return pushing();
       case LawRule::angular_momentum:
-        return {(angular_momentum(after_) - angular_momentum(pair_)).norm() / angular_momentum_scale(pair_)};
+        return change(angular_momentum(after_), angular_momentum(pair_), angular_momentum_scale(after_),
+                      angular_momentum_scale(pair_));
       case LawRule::exchange:
         return twin(exchanged(outcome(exchanged(pair_))), speeds_of(pair_));
       case LawRule::boost:
@@ -184,8 +185,18 @@ class PairTrial {
     return {speed / approach, kRoundings * kHalfEpsilon * speeds_of(pair_) / approach};
   }
 
+  /// What speeds are rounded by is a share of the approach; and a law whose impulse goes with that carries it
+  /// into the speeds after, which may be far higher than those before.
   Measured twin(const PairMeeting& other, double speeds) const {
-    return {apart(after_, other) / speeds_of(pair_), kRoundings * kHalfEpsilon * speeds / speeds_of(pair_)};
+    const double steepness = 1.0 + speeds_of(after_) / approach_of(pair_);
+    return {apart(after_, other) / speeds_of(pair_),
+            kRoundings * kHalfEpsilon * speeds / speeds_of(pair_) * steepness};
+  }
+
+  /// The change of what is conserved, by its scale before, against which and the one after it is rounded.
+  Measured change(const Vec3& after, const Vec3& before, double scale_after, double scale_before) const {
+    return {(after - before).norm() / scale_before,
+            kRoundings * kHalfEpsilon * std::max(1.0, scale_after / scale_before)};
   }
 
   Measured energy_elastic() const {

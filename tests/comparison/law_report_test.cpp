@@ -59,6 +59,24 @@ TEST(LawReport, LawsOfTheCheckout_BreakWhatTheySay) {
   }
 }
 
+// Whatever an impulse makes of the masses: along the normal and of the approach alone it keeps momentum, and
+// is the same from a train and in a mirror. Of masses 1:10⁴ some throw the light ball off ten thousand times
+// as fast as it came.
+TEST(LawReport, ImpulseOfTheApproach_KeepsItsRules_HoweverSteep) {
+  for (const std::string impulse : {"-(1 + e) * m1 * vn", "-2 * m1 * vn", "-(1 + e) * (m1 + m2) * vn",
+                                    "-m1 * m1 / m2 * vn", "-sqrt(m1 * m2) * vn"}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const LawFile law = parse_law("name = \"A law\"\nnormal = \"" + impulse + "\"\n", "my.toml");
+      const std::set<LawRule> rules = broken(examine_law(law, kPairs, seed));
+      for (const LawRule kept : {LawRule::momentum, LawRule::angular_momentum, LawRule::boost,
+                                 LawRule::mirror, LawRule::units, LawRule::pushing}) {
+        EXPECT_EQ(rules.count(kept), 0U)
+            << impulse << ", rule " << static_cast<int>(kept) << ", seed " << seed;
+      }
+    }
+  }
+}
+
 TEST(LawReport, EachRule_IsBrokenByWhatItIsFor) {
   using R = LawRule;
   const std::string right = "normal = \"-(1 + e) * m * vn\"\n";
