@@ -292,7 +292,7 @@ TEST_F(Lab, LimitsOfARequest_AreTold) {
            count + "\n";
   };
   EXPECT_THAT(error_of("/api/run", {{"toml", gas("5001", "10")}}),
-              HasSubstr("scene.toml:13:9: balls[0].count: found 5001 balls beside 0 others, allowed: at "
+              HasSubstr("scene.toml:13:9: balls[0].count: found 5001 balls beside 0 others, allowed here: at "
                         "most 5000 balls in all"));
   EXPECT_THAT(error_of("/api/run", {{"toml", gas("5000", "400")}}), HasSubstr("5000 balls in 401 frames"));
   const httplib::Result large =

@@ -9,12 +9,20 @@ namespace carom::page {
 namespace {
 
 // Most scenes take some ten kilobytes. A gas whose balls meet between any two frames takes up to ten bytes
-// for each ball and frame: where that is too much, there are fewer states of a run, on grids that nobody
-// sees, and fewer again until all runs fit: who compares engines misses one of them more than every second
-// picture. 1.8 MB hold nine runs of a thousand balls in 21 frames.
-constexpr PlaybackLimits kWhole = {.balls = 2000, .states = 300000, .bytes = 600000, .impacts = 3000};
-constexpr PlaybackLimits kThinned = {
-    .balls = 2000, .states = 40000, .bytes = 1800000, .impacts = 1000, .position_bits = 10, .speed_bits = 12};
+// for each ball and frame: a thousand balls in 600 frames fit as they are, in one run and its truth. Where
+// that is too much, runs are on grids that nobody sees, and in ever fewer frames until all of them fit: who
+// compares engines misses one of them more than every second picture.
+constexpr std::size_t kMostBytes = 1800000;
+constexpr PlaybackLimits kWhole = {.balls = 2000, .states = 700000, .bytes = kMostBytes, .impacts = 3000};
+constexpr PlaybackLimits kThinned = {.balls = 2000,
+                                     .states = 320000,
+                                     .bytes = kMostBytes,
+                                     .impacts = 1000,
+                                     .position_bits = 10,
+                                     .speed_bits = 12};
+/// Fewer would be fewer than 20 frames of a thousand balls; what does not fit then is left out, and said to
+/// be.
+constexpr std::size_t kFewestStates = 20000;
 
 /// What comes first when not all fits: carom and the engines set for fidelity, then others, then carom's
 /// variants.
@@ -24,14 +32,10 @@ int rank(const Run& run) {
   return run.profile == "faithful" ? 1 : 2;
 }
 
-/// Fewer would be fewer than 22 frames of a thousand balls; what does not fit then is left out, and said to
-/// be.
-constexpr std::size_t kFewestStates = 22000;
-
 PlaybackText playback_of(const SceneComparison& scene, const std::vector<const Run*>& runs) {
   PlaybackText text = write_playback(*scene.scene, runs, &scene.truth, kWhole);
   for (PlaybackLimits limits = kThinned; !text.left_out.empty() && limits.states >= kFewestStates;
-       limits.states = limits.states * 3 / 4) {
+       limits.states /= 2) {
     text = write_playback(*scene.scene, runs, &scene.truth, limits);
   }
   return text;
