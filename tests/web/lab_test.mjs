@@ -250,12 +250,30 @@ test("Lab_JudgesALaw_AndNamesAMistake", async () => {
   const broken = await rows.evaluateAll((all) => all.filter((row) => row.className === "lab-broken").map((row) => row.cells[0].textContent));
   assert.ok(broken.includes("the balls part with e times the speed at which they met"), broken.join());
   assert.ok(!broken.includes("momentum is kept"), broken.join());
-  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 2);
+  await opened("course/impulse", async () => {
+    await page.locator(".lab-normal").fill("-1.5 * m * vn");
+    await page.locator(".lab-try").click();
+  });
+  await page.waitForFunction(() => [...document.querySelectorAll(".cv-name")].map((name) => name.textContent).join() === "carom,your formula");
+  assert.deepEqual(await lab("(lab) => lab.viewer.motions.map(({ about }) => about.label)"), ["carom", "law@own"]);
+  const apart_m = await lab("(lab) => Math.max(...lab.viewer.apart)");
+  assert.ok(apart_m > 0.1, `a weaker push moves the balls otherwise: ${apart_m}`);
   await page.locator(".lab-normal").fill("-(1 + e) * mm * vn");
   await page.locator(".lab-try").click();
   await page.waitForFunction(() => document.querySelector(".lab-law .lab-error").textContent.includes("mm"));
   await page.locator(".lab-untry").click();
   await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 1);
+  await settled();
+});
+
+test("Lab_TellsWhereALawHasFailed", async () => {
+  await openMode("course/impulse");
+  await page.locator(".lab-normal").fill("sqrt(vn)");
+  await page.locator(".lab-try").click();
+  await page.waitForFunction(() => document.querySelector("main > .lab-error").textContent.startsWith("your formula: "));
+  await settled();
+  await page.locator(".lab-untry").click();
+  await page.waitForFunction(() => document.querySelector("main > .lab-error").textContent === "");
   await settled();
 });
 

@@ -84,7 +84,7 @@ class Lab {
       });
       this.id = id;
       this.history = [];
-      this.law = null;
+      this.forgetLaw();
       this.viewer?.close();
       this.viewer = null;
       this.tools.tool = kFirstTool[id] ?? "choose";
@@ -112,8 +112,12 @@ class Lab {
     await this.guarded(async () => {
       this.id = id;
       this.chosen = engines ?? this.chosen;
-      this.law = law ?? null;
-      if (law) this.lawBox.set(law);
+      if (law) {
+        this.lawBox.set(law);
+        this.putLawBeside(law);
+      } else {
+        this.forgetLaw();
+      }
       await this.run(toml, {});
       this.tell(this.sceneTitle.textContent);
     });
@@ -130,7 +134,7 @@ class Lab {
 
   /** Runs the scene in the chosen engines and plays it on from where the last one was. */
   async run(toml, options, remember = false) {
-    const engines = this.chosen.filter((label) => label && label !== kTruth && !label.startsWith(kLawEngine));
+    const engines = this.chosen.filter((label) => label && label !== kTruth && label !== kOwnLaw);
     const request = { toml, engines: engines.length > 0 ? engines : ["carom"], truth: this.chosen.includes(kTruth) };
     if (this.law) request.law = lawToml(this.law);
     this.busy.textContent = language.words.lab.running;
@@ -142,13 +146,11 @@ class Lab {
     const kept = this.viewer?.state() ?? {};
     const giveFocusBack = keepFocus(this.viewerHost);
     this.viewer?.close();
-    const own = playback.runs.find((run) => run.engine === kLawEngine)?.label;
-    const [first, second] = this.chosen;
-    const labels = own && this.law ? [first || own, own] : [first, second];
+    const labels = this.chosen;
     const host = make("div");
     this.viewerHost.replaceChildren(host);
     this.viewer = await Viewer.mount(host, playback, {
-      ...kept, ...options, engines: labels, global: true, choices: this.choices(own), toggles: { ...kept.toggles, ...options.toggles },
+      ...kept, ...options, engines: labels, global: true, choices: this.choices(), toggles: { ...kept.toggles, ...options.toggles },
       onEngines: (labels) => this.chooseEngines(labels), onBall: (found) => this.clickedBall(found),
     });
     host.caromViewer = this.viewer;
@@ -158,8 +160,8 @@ class Lab {
     this.error.textContent = failed.map((run) => language.words.notThere(language.words.label(run.label), run.reason || run.status)).join("\n");
   }
 
-  choices(own) {
-    return [...this.engines, ...(own ? [own] : []), kTruth];
+  choices() {
+    return [...this.engines, ...(this.law ? [kOwnLaw] : []), kTruth];
   }
 
   /** Who goes through a menu by keys comes by others first: only where they stay is run. */
@@ -208,15 +210,26 @@ class Lab {
 
   async tryLaw(law) {
     if (!law) {
-      this.law = null;
-      this.chosen = [this.chosen[0] || "carom", ""];
+      this.forgetLaw();
       await this.guarded(() => this.run(this.toml, { layout: "one" }));
       return null;
     }
     const report = await api.law(lawToml(law));
-    this.law = law;
+    this.putLawBeside(law);
     await this.guarded(() => this.run(this.toml, { layout: "beside" }));
     return report;
+  }
+
+  /** The law runs as an engine of its own, beside the first; where it was chosen already it stays in its place. */
+  putLawBeside(law) {
+    this.law = law;
+    if (!this.chosen.includes(kOwnLaw)) this.chosen = [this.chosen[0] || "carom", kOwnLaw];
+  }
+
+  forgetLaw() {
+    this.law = null;
+    const others = this.chosen.filter((label) => label !== kOwnLaw);
+    this.chosen = [others[0] || "carom", others[1] ?? ""];
   }
 
   async share() {
@@ -266,7 +279,7 @@ class Lab {
   }
 }
 
-const kLawEngine = "carom:law";
+const kOwnLaw = "law@own"; // as the server calls the run by the law that was typed
 const kTruth = "truth";
 
 const lab = new Lab(document.getElementById("lab"));

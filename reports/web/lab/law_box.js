@@ -32,7 +32,11 @@ export class LawBox {
       if (found) [this.normal.value, this.definitions.value] = [found.normal, found.definitions];
     });
     this.try = button("lab-try", () => this.run());
-    this.remove = button("lab-untry", () => { this.result.replaceChildren(); this.tried(null); });
+    this.remove = button("lab-untry", () => {
+      this.report = null;
+      this.result.replaceChildren();
+      this.tried(null);
+    });
     this.normal.addEventListener("keydown", (event) => { if (event.key === "Enter") this.run(); });
     this.error = make("p", { className: "lab-error", role: "alert", lang: "en" });
     this.result = make("div", { className: "lab-rules" });

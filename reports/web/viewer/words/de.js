@@ -8,7 +8,7 @@ export const de = {
   layout: "Ansicht",
   layouts: { one: "eine Engine", beside: "nebeneinander", over: "als Geist darüber" },
   ghost: (a, b) => `${a}; blass: ${b}`,
-  label: (label) => (label === "truth" ? "exakte Lösung" : label),
+  label: (label) => ({ truth: "exakte Lösung", "law@own": "deine Formel" }[label] ?? label),
   pastEnd: (label, t) => `${label}, bekannt bis ${t} s`,
   colours: "Farbe",
   colourings: { ball: "nach Kugel", speed: "nach Tempo", parted: "nach Abweichung" },

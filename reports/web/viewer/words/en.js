@@ -8,7 +8,7 @@ export const en = {
   layout: "Show",
   layouts: { one: "one engine", beside: "side by side", over: "as a ghost over it" },
   ghost: (a, b) => `${a}; pale: ${b}`,
-  label: (label) => (label === "truth" ? "exact solution" : label),
+  label: (label) => ({ truth: "exact solution", "law@own": "your formula" }[label] ?? label),
   pastEnd: (label, t) => `${label}, known until ${t} s`,
   colours: "Colour",
   colourings: { ball: "by ball", speed: "by speed", parted: "by difference" },
