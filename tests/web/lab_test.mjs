@@ -161,6 +161,13 @@ test("Lab_PutsAnotherEngineBesideTheFirst", async () => {
   assert.equal(await page.locator(".cv-name").count(), 2);
   await page.locator(".cv-engine-b").selectOption("");
   await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 1);
+  // "None" is a choice like any other: the next run has no second engine either.
+  await page.locator(".lab-ball").fill("0");
+  await page.locator(".lab-ball").press("Tab");
+  await opened("course/velocity-arrows", () => page.locator(".lab-heavier").click());
+  assert.deepEqual(await lab("(lab) => [lab.chosen, lab.viewer.motions.length]"), [["carom", ""], 1]);
+  await openMode("course/impulse");
+  assert.equal(await lab("(lab) => lab.viewer.motions.length"), 1);
 });
 
 test("Lab_MakesABallHeavier_AndTheFileSaysSo", async () => {

@@ -136,7 +136,7 @@ class Lab {
   async run(toml, options, remember = false) {
     const engines = this.chosen.filter((label) => label && label !== kTruth && label !== kOwnLaw);
     const request = { toml, engines: engines.length > 0 ? engines : ["carom"], truth: this.chosen.includes(kTruth) };
-    if (this.law) request.law = lawToml(this.law);
+    if (this.chosen.includes(kOwnLaw)) request.law = lawToml(this.law);
     this.busy.textContent = language.words.lab.running;
     const playback = await api.run(request).finally(() => { this.busy.textContent = ""; });
     if (this.id) playback.scene.id = this.id;
@@ -151,7 +151,7 @@ class Lab {
     this.viewerHost.replaceChildren(host);
     this.viewer = await Viewer.mount(host, playback, {
       ...kept, ...options, engines: labels, global: true, choices: this.choices(), toggles: { ...kept.toggles, ...options.toggles },
-      onEngines: (labels) => this.chooseEngines(labels), onBall: (found) => this.clickedBall(found),
+      onEngines: (labels, missing) => this.chooseEngines(labels, missing), onBall: (found) => this.clickedBall(found),
     });
     host.caromViewer = this.viewer;
     this.say();
@@ -165,11 +165,11 @@ class Lab {
   }
 
   /** Who goes through a menu by keys comes by others first: only where they stay is run. */
-  chooseEngines(labels) {
+  chooseEngines(labels, missing) {
     this.chosen = labels;
     this.before = null;
     clearTimeout(this.choosing);
-    this.choosing = setTimeout(() => this.runChosen(), kGoing_ms);
+    if (missing) this.choosing = setTimeout(() => this.runChosen(), kGoing_ms);
   }
 
   runChosen() {

@@ -30,12 +30,14 @@ export class Viewer {
    * @param host     an empty element
    * @param json     a playback
    * @param options  engines: labels of the first and the second run; onBall({ball, button, shift, time}): a ball was clicked;
-   *                 choices, onEngines([a, b]): labels that may be chosen although the playback lacks them, and who runs them;
+   *                 choices: labels that may be chosen although the playback lacks them; onEngines([a, b], missing): these
+   *                 were chosen, and the playback may lack one, which is then to be run;
    *                 time, toggles, layout, speed, boxes: as an earlier viewer's state(); autoplay; global: keys of the whole page
    */
   static async mount(host, json, options = {}) {
     const viewer = new Viewer(host, await Playback.read(json), options);
     await viewer.choose(viewer.labels[0], viewer.labels[1]);
+    viewer.mounted = true;
     if (options.time) viewer.goTo(options.time);
     if (options.autoplay && !matchMedia("(prefers-reduced-motion: reduce)").matches) viewer.toggle();
     return viewer;
@@ -82,10 +84,9 @@ export class Viewer {
     if (b === a) b = "";
     const asked = [a, b].filter(Boolean);
     const there = this.playback.played.map((run) => run.label);
-    if (this.options.onEngines && !asked.every((label) => there.includes(label)) && this.stage) {
-      this.options.onEngines([a, b]);
-      return;
-    }
+    const missing = !asked.every((label) => there.includes(label));
+    if (this.mounted) this.options.onEngines?.([a, b], missing);
+    if (this.mounted && missing) return;
     this.labels = [a, b];
     const runs = await Promise.all(asked.map((label) => this.playback.run(label)));
     if (this.closed || asked.join() !== this.labels.filter(Boolean).join()) return;
