@@ -170,6 +170,21 @@ test("Lab_PutsAnotherEngineBesideTheFirst", async () => {
   assert.equal(await lab("(lab) => lab.viewer.motions.length"), 1);
 });
 
+test("Lab_FallsBackToCarom_WhereAnEngineCannotRunTheScene", async () => {
+  await openMode("course/impulse");
+  await page.locator(".cv-engine-a").selectOption("carom:textbook");
+  await page.waitForFunction(() => [...document.querySelectorAll(".cv-name")].map((name) => name.textContent).join() === "carom:textbook");
+  await openMode("course/quantum-barrier");
+  assert.match(await error(), /^carom:textbook: ./);
+  assert.equal(await page.locator(".cv-engine-a").inputValue(), "carom");
+  assert.equal(await lab("(lab) => lab.viewer.labels[0]"), "carom");
+  await openMode("course/impulse");
+  assert.equal(await lab("(lab) => lab.viewer.labels[0]"), "carom:textbook", "what was chosen comes back");
+  await page.locator(".cv-engine-a").selectOption("carom");
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.labels[0] === "carom");
+  await settled();
+});
+
 test("Lab_MakesABallHeavier_AndTheFileSaysSo", async () => {
   await openMode("course/brute-force");
   await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.goTo(1); }");

@@ -132,13 +132,26 @@ class Lab {
     if (before !== undefined) await this.guarded(() => this.run(before, {}));
   }
 
+  /** A playback of the chosen engines; where none of them can run the scene, of Carom. And the runs that failed. */
+  async playbackOf(toml) {
+    const playback = await this.ask(toml);
+    const failed = playback.runs.filter((run) => this.chosen.includes(run.label) && run.status !== "ok");
+    if (playback.runs.some((run) => run.positions || run.same_as) || this.chosen.includes(kFallback)) return { playback, failed };
+    this.chooseFirst([kFallback, ""]);
+    return { playback: await this.ask(toml), failed };
+  }
+
+  async ask(toml) {
+    const engines = this.chosen.filter((label) => label && label !== kTruth && label !== kOwnLaw);
+    const request = { toml, engines: engines.length > 0 ? engines : [kFallback], truth: this.chosen.includes(kTruth) };
+    if (this.chosen.includes(kOwnLaw)) request.law = lawToml(this.law);
+    return api.run(request);
+  }
+
   /** Runs the scene in the chosen engines and plays it on from where the last one was. */
   async run(toml, options, remember = false) {
-    const engines = this.chosen.filter((label) => label && label !== kTruth && label !== kOwnLaw);
-    const request = { toml, engines: engines.length > 0 ? engines : ["carom"], truth: this.chosen.includes(kTruth) };
-    if (this.chosen.includes(kOwnLaw)) request.law = lawToml(this.law);
     this.busy.textContent = language.words.lab.running;
-    const playback = await api.run(request).finally(() => { this.busy.textContent = ""; });
+    const { playback, failed } = await this.playbackOf(toml).finally(() => { this.busy.textContent = ""; });
     if (this.id) playback.scene.id = this.id;
     if (remember && this.toml !== undefined) this.history.push(this.toml);
     this.toml = toml;
@@ -146,17 +159,15 @@ class Lab {
     const kept = this.viewer?.state() ?? {};
     const giveFocusBack = keepFocus(this.viewerHost);
     this.viewer?.close();
-    const labels = this.chosen;
     const host = make("div");
     this.viewerHost.replaceChildren(host);
     this.viewer = await Viewer.mount(host, playback, {
-      ...kept, ...options, engines: labels, global: true, choices: this.choices(), toggles: { ...kept.toggles, ...options.toggles },
+      ...kept, ...options, engines: this.chosen, global: true, choices: this.choices(), toggles: { ...kept.toggles, ...options.toggles },
       onEngines: (labels, missing) => this.chooseEngines(labels, missing), onBall: (found) => this.clickedBall(found),
     });
     host.caromViewer = this.viewer;
     this.say();
     giveFocusBack();
-    const failed = playback.runs.filter((run) => labels.includes(run.label) && run.status !== "ok");
     this.error.textContent = failed.map((run) => language.words.notThere(language.words.label(run.label), run.reason || run.status)).join("\n");
   }
 
@@ -223,13 +234,13 @@ class Lab {
   /** The law runs as an engine of its own, beside the first; where it was chosen already it stays in its place. */
   putLawBeside(law) {
     this.law = law;
-    if (!this.chosen.includes(kOwnLaw)) this.chosen = [this.chosen[0] || "carom", kOwnLaw];
+    if (!this.chosen.includes(kOwnLaw)) this.chosen = [this.chosen[0] || kFallback, kOwnLaw];
   }
 
   forgetLaw() {
     this.law = null;
     const others = this.chosen.filter((label) => label !== kOwnLaw);
-    this.chosen = [others[0] || "carom", others[1] ?? ""];
+    this.chosen = [others[0] || kFallback, others[1] ?? ""];
   }
 
   async share() {
@@ -281,6 +292,7 @@ class Lab {
 
 const kOwnLaw = "law@own"; // as the server calls the run by the law that was typed
 const kTruth = "truth";
+const kFallback = "carom";
 
 const lab = new Lab(document.getElementById("lab"));
 document.getElementById("lab").caromLab = lab;

@@ -91,7 +91,9 @@ export class Viewer {
     const runs = await Promise.all(asked.map((label) => this.playback.run(label)));
     if (this.closed || asked.join() !== this.labels.filter(Boolean).join()) return;
     if (runs.length === 0) {
-      this.host.replaceChildren(make("p", { className: "cv-note" }, language.words.nothing));
+      // The menus stay: another engine may run it.
+      this.host.replaceChildren(this.controls.head, make("p", { className: "cv-note" }, language.words.nothing), this.controls.dialog);
+      this.controls.say();
       return;
     }
     this.motions = runs.map((run) => new Motion(this.playback, run));
