@@ -288,6 +288,28 @@ test("Lab_JudgesALaw_AndNamesAMistake", async () => {
   await settled();
 });
 
+test("Lab_JudgesALawWithAnImpulseForEachBall", async () => {
+  await openMode("course/impulse");
+  await page.locator(".lab-example").selectOption("squares");
+  await opened("course/impulse", () => page.locator(".lab-try").click());
+  const broken = page.locator(".lab-rules .lab-broken th");
+  await broken.first().waitFor();
+  assert.ok((await broken.allInnerTexts()).includes("momentum is kept"));
+  assert.equal(await page.locator(".lab-law .lab-error").innerText(), "");
+  await opened("course/impulse", () => page.locator(".lab-untry").click());
+});
+
+test("Lab_NamesTheLineOfALawThatItCannotRead", async () => {
+  await page.locator(".lab-normal").fill("-(1 + e) * k * vn");
+  for (const [language, told] of [["de", /^Zeile 3: .*k := m.*erlaubt/], ["en", /^Line 3: found "k := m", allowed: name = expression/]]) {
+    await page.locator(".cv-language").selectOption(language);
+    await page.locator(".lab-let").fill("# half of it\n\nk := m");
+    await page.locator(".lab-try").click();
+    assert.match(await page.locator(".lab-law .lab-error").innerText(), told);
+  }
+  await page.locator(".lab-let").fill("");
+});
+
 test("Lab_TellsWhereALawHasFailed", async () => {
   await openMode("course/impulse");
   await page.locator(".lab-normal").fill("sqrt(vn)");

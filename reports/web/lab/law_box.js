@@ -10,14 +10,33 @@ export const kExamples = [
   { id: "own-mass", normal: "-(1 + e) * m1 * vn", definitions: "" },
   { id: "sum", normal: "-(1 + e) * (m1 + m2) * vn", definitions: "" },
   { id: "speeds", normal: "m2 * (abs(vn1) + abs(vn2))", definitions: "" },
+  { id: "squares", normal: "", definitions: `normal_1 = m1 * (x - vn1)
+normal_2 = m2 * (x + w - vn2)
+w = -e * vn
+k = m1 * vn1^2 + m2 * vn2^2
+q = (m1 + m2) * k - m1 * m2 * w^2
+root = sign(m1 * vn1 + m2 * vn2) * sqrt(max(q, 0))
+x = (-m2 * w + root) / (m1 + m2)` },
 ];
 
-/** The law file of what was typed: strings of JSON are strings of TOML. */
+const kLawKeys = ["normal", "normal_1", "normal_2", "tangential", "tangential_1", "tangential_2"];
+
+/** A line as it was typed or as it stands in a law file: a name and an expression, with quotation marks or without. */
+function definitionOf(line, place) {
+  const found = /^\s*([A-Za-z_]\w*)\s*=\s*(?:"([^"]+)"|([^"]*[^"\s]))\s*$/.exec(line);
+  if (found) return [found[1], found[2] ?? found[3]];
+  const error = new Error(language.words.lab.badDefinition(place, line.trim()));
+  error.lang = language.id;
+  throw error;
+}
+
+/** The law file of what was typed: strings of JSON are strings of TOML. Empty lines and comments (#) say nothing. */
 export function lawToml({ normal, definitions }) {
-  const lines = [`name = "lab"`, `normal = ${JSON.stringify(normal)}`];
-  const own = definitions.split("\n").map((line) => /^\s*([A-Za-z_]\w*)\s*=\s*(.+?)\s*$/.exec(line)).filter(Boolean);
-  if (own.length > 0) lines.push("[let]", ...own.map(([, name, text]) => `${name} = ${JSON.stringify(text)}`));
-  return `${lines.join("\n")}\n`;
+  const lines = definitions.split("\n").map((line, k) => (/^\s*(#|$)/.test(line) ? null : definitionOf(line, k + 1))).filter(Boolean);
+  const toml = ([name, text]) => `${name} = ${JSON.stringify(text)}`;
+  const pushes = [...(normal.trim() ? [["normal", normal]] : []), ...lines.filter(([name]) => kLawKeys.includes(name))];
+  const own = lines.filter(([name]) => !kLawKeys.includes(name));
+  return `${[`name = "lab"`, ...pushes.map(toml), ...(own.length > 0 ? ["[let]", ...own.map(toml)] : [])].join("\n")}\n`;
 }
 
 export class LawBox {
@@ -25,7 +44,7 @@ export class LawBox {
   constructor(tried) {
     this.tried = tried;
     this.normal = make("input", { type: "text", className: "lab-normal", value: kExamples[0].normal, spellcheck: false, autocapitalize: "off" });
-    this.definitions = make("textarea", { className: "lab-let", rows: 2, spellcheck: false });
+    this.definitions = make("textarea", { className: "lab-let", rows: 4, spellcheck: false });
     this.example = make("select", { className: "lab-example" });
     this.example.addEventListener("change", () => {
       const found = kExamples.find(({ id }) => id === this.example.value);
@@ -81,6 +100,7 @@ export class LawBox {
     } catch (error) {
       this.report = null;
       this.result.replaceChildren();
+      this.error.lang = error.lang ?? "en";
       this.error.textContent = error.message;
     } finally {
       this.try.disabled = false;
