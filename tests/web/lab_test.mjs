@@ -326,8 +326,31 @@ test("Lab_AnswersBadInput_AsTheCommandLineDoes", async () => {
   const toml = await page.locator(".lab-toml").inputValue();
   await page.locator(".lab-toml").fill(`colour = 1\n${toml}`);
   await page.locator(".lab-run").click();
-  await page.waitForFunction(() => document.querySelector("main > .lab-error").textContent.includes("colour: unknown key"));
+  await page.waitForFunction(() => document.querySelector(".lab-scene .lab-error").textContent.includes("colour: unknown key"));
+  assert.equal(await error(), "");
+  const away_px = await page.evaluate(() => document.querySelector(".lab-scene .lab-error").getBoundingClientRect().top
+    - document.querySelector(".lab-toml").getBoundingClientRect().bottom);
+  assert.ok(away_px >= 0 && away_px < 100, `${away_px}`);
   await page.locator(".lab-toml").fill(toml);
+});
+
+test("Lab_TakesATextOfOnesOwnForNoMode_UntilItIsTakenBack", async () => {
+  await openMode("course/impulse");
+  await page.locator(".lab-ball").fill("0");
+  await page.locator(".lab-ball").press("Tab");
+  await opened("course/impulse", () => page.locator(".lab-heavier").click());
+  assert.equal(await page.locator(".cv-mode > p").count(), 3, "a heavier ball leaves the mode what it is");
+  await page.locator(".lab-scene").evaluate((box) => { box.open = true; });
+  const toml = (await page.locator(".lab-toml").inputValue()).replace(/title\s*=.*/, 'title = "Five of mine"');
+  await opened("lab/scene", () => page.locator(".lab-open").setInputFiles({ name: "mine.toml", mimeType: "application/toml", buffer: Buffer.from(toml) }));
+  assert.equal(await page.locator("main > h2").innerText(), "Five of mine");
+  assert.equal(await page.locator(".cv-mode > p").count(), 0);
+  assert.equal(await page.locator(".lab-mode[aria-current]").count(), 0);
+  assert.equal(await page.evaluate(() => location.hash), "");
+  await opened("course/impulse", () => page.locator(".lab-undo").click());
+  assert.equal(await page.locator(".cv-mode > p").count(), 3);
+  assert.equal(await page.evaluate(() => decodeURIComponent(location.hash)), "#m=course/impulse");
+  assert.equal(await page.locator('.lab-mode[data-id="course/impulse"][aria-current]').count(), 1);
 });
 
 test("Lab_SharesASceneByItsLink", async () => {

@@ -123,13 +123,29 @@ class Lab {
     });
   }
 
+  /** A text that is not the one shown is no mode of the course any more: neither its words nor its address are its own. */
   runText(toml) {
-    return this.guarded(() => this.run(toml, {}, true));
+    const same = toml === this.toml;
+    return this.guarded(async () => {
+      await this.run(toml, {}, { remember: true, id: same ? this.id : null });
+      if (!same) this.standFor(null);
+    }, this.sceneBox.error);
   }
 
   async undo() {
     const before = this.history.pop();
-    if (before !== undefined) await this.guarded(() => this.run(before, {}));
+    if (before === undefined) return;
+    await this.guarded(async () => {
+      await this.run(before.toml, {}, { id: before.id });
+      this.standFor(before.id);
+    }, this.sceneBox.error);
+  }
+
+  /** What the address and the menu say is open. */
+  standFor(id) {
+    this.wanted = id;
+    history.replaceState(null, "", id ? `#m=${encodeURIComponent(id)}` : location.pathname);
+    this.say();
   }
 
   /** A playback of the chosen engines; where none of them can run the scene, of Carom. And the runs that failed. */
@@ -149,12 +165,13 @@ class Lab {
   }
 
   /** Runs the scene in the chosen engines and plays it on from where the last one was. */
-  async run(toml, options, remember = false) {
+  async run(toml, options, { remember = false, id = this.id } = {}) {
     this.busy.textContent = language.words.lab.running;
     const { playback, failed } = await this.playbackOf(toml).finally(() => { this.busy.textContent = ""; });
-    if (this.id) playback.scene.id = this.id;
-    if (remember && this.toml !== undefined) this.history.push(this.toml);
+    if (id) playback.scene.id = id;
+    if (remember && this.toml !== undefined) this.history.push({ toml: this.toml, id: this.id });
     this.toml = toml;
+    this.id = id;
     this.sceneBox.text.value = toml;
     const kept = this.viewer?.state() ?? {};
     const giveFocusBack = keepFocus(this.viewerHost);
@@ -210,7 +227,7 @@ class Lab {
     const { ball } = this.tools;
     return this.guarded(async () => {
       const { toml } = await api.withEvent(this.toml, { time, ball, ...action });
-      await this.run(toml, { time }, true);
+      await this.run(toml, { time }, { remember: true });
       this.viewer.chosen = ball;
       const { masses, radii } = this.viewer.bodiesAfter(time);
       this.tell(language.words.lab.changed(ball, language.number(masses[ball]), language.number(radii[ball])));
@@ -251,14 +268,14 @@ class Lab {
     this.busy.textContent = language.words.lab.shared;
   }
 
-  /** Does one thing after the other, so that a late answer never replaces a newer one; what fails is told. */
-  guarded(work) {
+  /** Does one thing after the other, so that a late answer never replaces a newer one; what fails is told where it was asked. */
+  guarded(work, told = this.error) {
     this.queue = (this.queue ?? Promise.resolve()).then(async () => {
-      this.error.textContent = "";
+      for (const error of [this.error, this.sceneBox.error]) error.textContent = "";
       try {
         await work();
       } catch (error) {
-        this.error.textContent = error.message;
+        told.textContent = error.message;
       }
     });
     return this.queue;

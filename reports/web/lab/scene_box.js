@@ -17,6 +17,8 @@ export class SceneBox {
       if (file) asked.run(await file.text());
       this.file.value = "";
     });
+    // Beside the text that it is about: the page's own is far above, out of sight.
+    this.error = make("p", { className: "lab-error", role: "alert", lang: "en" });
     this.summary = make("summary");
     this.label = make("span");
     this.openLabel = make("span");
@@ -24,7 +26,7 @@ export class SceneBox {
     this.element = make("details", { className: "lab-box lab-scene" }, this.summary,
       make("label", { className: "cv-field" }, this.label, this.text),
       make("div", { className: "cv-buttons" }, this.run, this.undo, this.save, this.share),
-      make("label", { className: "cv-field" }, this.openLabel, this.file), this.link);
+      this.error, make("label", { className: "cv-field" }, this.openLabel, this.file), this.link);
   }
 
   say() {
