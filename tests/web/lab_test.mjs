@@ -242,6 +242,18 @@ test("Lab_TakesATapForAClick_AndALongPressForARightClick", async () => {
   for (const lost of await page.locator(".cv-energy-lost").all()) assert.equal(Number(await lost.getAttribute("data-value")), 0);
 });
 
+test("Lab_ShowsAChangedBallAtOnce_BetweenTwoFrames", async () => {
+  await openMode("course/impulse");
+  await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.goTo(1.005); }");
+  const before = await lab("(lab) => lab.viewer.paint() ?? [lab.viewer.bodies.masses[1], lab.viewer.bodies.radii[1]]");
+  await page.locator(".lab-ball").fill("1");
+  await page.locator(".lab-ball").press("Tab");
+  await opened("course/impulse", () => page.locator(".lab-heavier").click());
+  const after = await lab("(lab) => lab.viewer.paint() ?? [lab.viewer.clock.time, lab.viewer.bodies.masses[1], lab.viewer.bodies.radii[1]]");
+  [1.005, 1.1 * before[0], 1.05 * before[1]].forEach((wanted, k) => assert.ok(Math.abs(after[k] - wanted) < 1e-12, `${after}`));
+  await page.waitForFunction(() => document.querySelector(".lab-changed").textContent === "Ball 1: 2.2 kg, radius 0.336 m");
+});
+
 test("Lab_TellsTheEnginesOwnPairTests", async () => {
   await openMode("course/brute-force");
   const told = /(\d+) by brute force, (\d+) with its quadtree/.exec(await page.locator(".cv-counts").innerText());

@@ -172,6 +172,7 @@ class Lab {
     if (remember && this.toml !== undefined) this.history.push({ toml: this.toml, id: this.id });
     this.toml = toml;
     this.id = id;
+    this.tools.tellChange(null);
     this.sceneBox.text.value = toml;
     const kept = this.viewer?.state() ?? {};
     const giveFocusBack = keepFocus(this.viewerHost);
@@ -227,10 +228,11 @@ class Lab {
     const { ball } = this.tools;
     return this.guarded(async () => {
       const { toml } = await api.withEvent(this.toml, { time, ball, ...action });
-      await this.run(toml, { time }, { remember: true });
+      await this.run(toml, { time, changedAt: time }, { remember: true });
       this.viewer.chosen = ball;
       const { masses, radii } = this.viewer.bodiesAfter(time);
-      this.tell(language.words.lab.changed(ball, language.number(masses[ball]), language.number(radii[ball])));
+      this.tools.tellChange({ ball, mass: masses[ball], radius: radii[ball] });
+      this.tell(this.tools.changeText);
     });
   }
 

@@ -31,12 +31,27 @@ export class Tools {
     });
     this.ballName = make("span");
     this.changes = Object.entries(kChanges).map(([name, action]) => ({ name, made: button(`lab-${name}`, () => asked.change(action)) }));
+    // The lab tells a screen reader the same by its own line.
+    this.changeNote = make("span", { className: "lab-changed cv-note", "aria-hidden": "true" });
     this.element = make("fieldset", { className: "lab-tools" }, this.legend, ...this.radios.map(({ label }) => label),
-      make("label", {}, this.ballName, " ", this.number), ...this.changes.map(({ made }) => made));
+      make("label", {}, this.ballName, " ", this.number), ...this.changes.map(({ made }) => made), this.changeNote);
     this.count = 0;
   }
 
+  /** @param change  the ball that was changed, its mass and radius after that; or nothing */
+  tellChange(change) {
+    this.change = change;
+    this.changeNote.textContent = this.changeText;
+  }
+
+  get changeText() {
+    if (!this.change) return "";
+    const { ball, mass, radius } = this.change;
+    return language.words.lab.changed(ball, language.number(mass), language.number(radius));
+  }
+
   say() {
+    this.tellChange(this.change);
     const { lab } = language.words;
     this.legend.textContent = lab.click;
     for (const { tool, text, label } of this.radios) {

@@ -32,6 +32,7 @@ export class Viewer {
    * @param options  engines: labels of the first and the second run; onBall({ball, button, shift, time}): a ball was clicked;
    *                 choices: labels that may be chosen although the playback lacks them; onEngines([a, b], missing): these
    *                 were chosen, and the playback may lack one, which is then to be run;
+   *                 changedAt: the time at which somebody has just changed a ball, s;
    *                 time, toggles, layout, speed, boxes: as an earlier viewer's state(); autoplay; global: keys of the whole page
    */
   static async mount(host, json, options = {}) {
@@ -101,7 +102,7 @@ export class Viewer {
     this.turns = new Float32Array(4 * this.playback.balls.shown);
     if (this.motions.length === 2 && this.layout === "one") this.layout = "beside";
     if (this.motions.length === 1) this.layout = "one";
-    this.bodies = bodiesAt(this.playback, this.clock.time);
+    this.bodies = this.bodiesShown(this.clock.time);
     this.scales = scalesOf(this.motions[0], this.playback.balls.mass);
     this.apart = this.motions.length === 2 ? distances(...this.motions) : null;
     const view = extent(this.playback.scene, this.motions.slice(0, 1), this.playback.balls.radius);
@@ -258,7 +259,7 @@ export class Viewer {
   paint() {
     const time = this.clock.time;
     this.motions.forEach((motion, k) => { this.states[k] = motion.at(time, this.states[k]); });
-    this.bodies = bodiesAt(this.playback, time);
+    this.bodies = this.bodiesShown(time);
     const shots = this.shots();
     shots.forEach((shot, k) => drawScene(this.pictures[k], shot));
     const pictures = shots.map((shot, k) => ({ picture: this.pictures[k], state: shot.state, radii: shot.bodies.radii,
@@ -305,6 +306,11 @@ export class Viewer {
   }
 
   colourOfBall(ball) { return colourOf(ball, this.motions[0].balls); }
+
+  /** At the very time at which somebody has just changed a ball, it is to be seen as it is from then on. */
+  bodiesShown(time) {
+    return time === this.options.changedAt ? this.bodiesAfter(time) : bodiesAt(this.playback, time);
+  }
 
   /** The masses and radii from the first frame on that shows what happened at a time. */
   bodiesAfter(time) {
