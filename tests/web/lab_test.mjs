@@ -254,6 +254,26 @@ test("Lab_ShowsAChangedBallAtOnce_BetweenTwoFrames", async () => {
   await page.waitForFunction(() => document.querySelector(".lab-changed").textContent === "Ball 1: 2.2 kg, radius 0.336 m");
 });
 
+test("Lab_PausesBySpace_AfterAClickOnASwitch_AndShutsTheHelpByTheKeyThatOpensIt", async () => {
+  await openMode("course/impulse");
+  await lab("(lab) => { lab.viewer.clock.playing = false; lab.viewer.show(); }");
+  const state = () => lab("(lab) => [lab.viewer.toggles.trails, lab.viewer.clock.playing]");
+  const trails = page.locator(".cv-toggle-trails");
+  const [first] = await state();
+  await trails.click();
+  await page.keyboard.press("Space");
+  assert.deepEqual(await state(), [!first, true]);
+  await page.keyboard.press("Space");
+  assert.deepEqual(await state(), [!first, false]);
+  await trails.focus();
+  await page.keyboard.press("Space");
+  assert.deepEqual(await state(), [first, false], "who stands on a switch by the keyboard turns it");
+  for (const open of [true, false, true, false]) {
+    await page.keyboard.press("h");
+    assert.equal(await page.locator(".cv-help").evaluate((dialog) => dialog.open), open);
+  }
+});
+
 test("Lab_TellsTheEnginesOwnPairTests", async () => {
   await openMode("course/brute-force");
   const told = /(\d+) by brute force, (\d+) with its quadtree/.exec(await page.locator(".cv-counts").innerText());

@@ -238,9 +238,8 @@ export class Controls {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     const { viewer } = this;
     const at = event.target;
-    const slider = at.matches?.("input[type=range]");
-    if (at.matches?.("textarea, select, input, [contenteditable]") && !slider) return;
-    if (event.key === " " && at.matches?.("button, summary, a")) return;
+    if (at.matches?.("textarea, select, input:not([type=range], [type=checkbox]), [contenteditable]")) return;
+    if (event.key === " " && at.matches?.("button, summary, a, input[type=checkbox]")) return;
     if (event.key.startsWith("Arrow") && at.matches?.(".cv-scroll, [role=tab]")) return;
     if (!viewer.stage || !(keysEverywhere() || at === viewer.stage.canvas || this.dialog.open)) return;
     const act = this.actionOf(event);

@@ -67,8 +67,13 @@ export class Viewer {
     this.panels = new Panels(this, options.boxes);
     this.live = make("p", { className: "cv-live", role: "status", "aria-live": "polite" });
     this.announced = 0;
+    this.shut = new AbortController();
     host.classList.add("carom-viewer");
     host.replaceChildren(make("p", { className: "cv-note" }, language.words.loading));
+    // Who clicked a button with a pointer means the picture by the next key; who pressed one by a key stands on it.
+    host.addEventListener("click", ({ detail, target }) => {
+      if (detail > 0 && target.closest("button, summary")) this.stage?.canvas.focus({ preventScroll: true });
+    }, { signal: this.shut.signal });
     this.keyTarget = options.global ? document : host;
     this.onKey = (event) => this.controls.key(event);
     this.keyTarget.addEventListener("keydown", this.onKey);
@@ -392,6 +397,7 @@ export class Viewer {
 
   close() {
     this.closed = true;
+    this.shut.abort();
     cancelAnimationFrame(this.asked);
     this.keyTarget.removeEventListener("keydown", this.onKey);
     language.listeners.delete(this.onLanguage);
