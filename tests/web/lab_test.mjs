@@ -274,6 +274,23 @@ test("Lab_PausesBySpace_AfterAClickOnASwitch_AndShutsTheHelpByTheKeyThatOpensIt"
   }
 });
 
+test("Lab_LooksOnFromTheSamePlace_UntilAnotherSceneIsOpened", async () => {
+  const camera = () => lab("({ viewer: { stage: { camera: { yaw, pitch, zoom, target } } } }) => ({ yaw, pitch, zoom, target })");
+  await openMode("course/octree");
+  const first = await camera();
+  await page.locator("canvas.cv-canvas").focus();
+  for (const key of ["a", "w", "+"]) await page.keyboard.press(key);
+  const turned = await camera();
+  assert.ok(turned.yaw !== first.yaw && turned.pitch !== first.pitch && turned.zoom !== first.zoom);
+  await page.locator(".lab-ball").fill("0");
+  await page.locator(".lab-ball").press("Tab");
+  await opened("course/octree", () => page.locator(".lab-heavier").click());
+  assert.deepEqual(await camera(), turned);
+  await openMode("course/impulse");
+  await openMode("course/octree");
+  assert.deepEqual(await camera(), first);
+});
+
 test("Lab_TellsTheEnginesOwnPairTests", async () => {
   await openMode("course/brute-force");
   const told = /(\d+) by brute force, (\d+) with its quadtree/.exec(await page.locator(".cv-counts").innerText());

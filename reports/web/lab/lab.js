@@ -30,7 +30,9 @@ class Lab {
     this.menu = new Menu((id) => this.openMode(id));
     this.tools = new Tools({ choose: (ball) => this.choseBall(ball), change: (action) => this.change(action) });
     this.lawBox = new LawBox((law) => this.tryLaw(law));
-    this.sceneBox = new SceneBox({ run: (toml) => this.runText(toml), undo: () => this.undo(), share: () => this.share() });
+    this.sceneBox = new SceneBox({
+      run: (toml) => this.runText(toml), open: (toml) => this.runText(toml, { camera: null }), undo: () => this.undo(), share: () => this.share(),
+    });
     this.build();
     language.listeners.add(() => this.say());
   }
@@ -118,16 +120,16 @@ class Lab {
       } else {
         this.forgetLaw();
       }
-      await this.run(toml, {});
+      await this.run(toml, { camera: null });
       this.tell(this.sceneTitle.textContent);
     });
   }
 
   /** A text that is not the one shown is no mode of the course any more: neither its words nor its address are its own. */
-  runText(toml) {
+  runText(toml, options = {}) {
     const same = toml === this.toml;
     return this.guarded(async () => {
-      await this.run(toml, {}, { remember: true, id: same ? this.id : null });
+      await this.run(toml, options, { remember: true, id: same ? this.id : null });
       if (!same) this.standFor(null);
     }, this.sceneBox.error);
   }

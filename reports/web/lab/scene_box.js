@@ -4,7 +4,7 @@ import { button, make, save } from "../viewer/dom.js";
 import { language } from "../viewer/words/words.js";
 
 export class SceneBox {
-  /** @param asked  run(toml), undo(), share() */
+  /** @param asked  run(toml), open(toml), undo(), share() */
   constructor(asked) {
     this.text = make("textarea", { className: "lab-toml", rows: 16, spellcheck: false });
     this.run = button("lab-run", () => asked.run(this.text.value));
@@ -14,7 +14,7 @@ export class SceneBox {
     this.file = make("input", { type: "file", accept: ".toml", className: "lab-open" });
     this.file.addEventListener("change", async () => {
       const [file] = this.file.files;
-      if (file) asked.run(await file.text());
+      if (file) asked.open(await file.text());
       this.file.value = "";
     });
     // Beside the text that it is about: the page's own is far above, out of sight.

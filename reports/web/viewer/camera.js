@@ -13,6 +13,18 @@ export class Camera {
     this.yaw = this.flat ? 0 : 0.55;
     this.pitch = this.flat ? 0 : 0.35;
     this.zoom = 1;
+    this.moved = false;
+  }
+
+  /** What somebody has chosen to see; nothing where it is as at first. */
+  get state() {
+    const { flat, target, yaw, pitch, zoom } = this;
+    return this.moved ? { flat, target, yaw, pitch, zoom } : null;
+  }
+
+  /** Looks as another camera did. From the plane to space there is no such thing. */
+  take(state) {
+    if (state?.flat === this.flat) Object.assign(this, state, { moved: true });
   }
 
   /** Half of what is seen in height at the target, m. */
@@ -49,6 +61,7 @@ export class Camera {
 
   orbit(dx, dy) {
     if (this.flat) return;
+    this.moved = true;
     this.yaw -= dx;
     this.pitch = Math.min(Math.max(this.pitch + dy, -1.5), 1.5);
   }
@@ -57,10 +70,12 @@ export class Camera {
   pan(dx, dy, aspect) {
     const { right, up } = this.axes();
     const half = this.halfHeight(aspect);
+    this.moved = true;
     this.target = this.target.map((x, c) => x - half * (dx * right[c] - dy * up[c]));
   }
 
   zoomBy(factor) {
+    this.moved = true;
     this.zoom = Math.min(Math.max(this.zoom * factor, 0.05), 1e4);
   }
 }

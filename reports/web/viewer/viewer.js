@@ -33,7 +33,7 @@ export class Viewer {
    *                 choices: labels that may be chosen although the playback lacks them; onEngines([a, b], missing): these
    *                 were chosen, and the playback may lack one, which is then to be run;
    *                 changedAt: the time at which somebody has just changed a ball, s;
-   *                 time, toggles, layout, speed, boxes: as an earlier viewer's state(); autoplay; global: keys of the whole page
+   *                 time, toggles, layout, speed, boxes, camera: as an earlier viewer's state(); autoplay; global: keys of the whole page
    */
   static async mount(host, json, options = {}) {
     const viewer = new Viewer(host, await Playback.read(json), options);
@@ -123,6 +123,7 @@ export class Viewer {
       dimension: this.playback.scene.dimension, box: view, plain: this.options.plain,
       changed: () => this.request(), clicked: (found) => this.clicked(found),
     });
+    this.stage.camera.take(this.options.camera);
     this.stage.takesClicks = Boolean(this.options.onBall);
     this.host.replaceChildren(this.controls.head, make("div", { className: "cv-body" },
       make("div", { className: "cv-left" }, this.stage.element, this.stage.message, this.controls.counts, this.controls.transport, this.controls.switches, this.live, this.controls.caption),
@@ -134,7 +135,8 @@ export class Viewer {
   /** What another viewer needs to go on where this one is. */
   state() {
     return { time: this.clock.time, toggles: { ...this.toggles }, layout: this.layout, colouring: this.colouring,
-      speed: this.clock.speed, engines: this.labels.filter(Boolean), boxes: this.panels.open, autoplay: this.clock.playing };
+      speed: this.clock.speed, engines: this.labels.filter(Boolean), boxes: this.panels.open, autoplay: this.clock.playing,
+      camera: this.stage?.camera.state };
   }
 
   // --- what a person does
