@@ -159,6 +159,9 @@ test("Lab_PutsAnotherEngineBesideTheFirst", async () => {
   await page.locator(".cv-engine-b").selectOption("carom:step");
   await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 2);
   assert.equal(await page.locator(".cv-name").count(), 2);
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer.panels.overTime.plots[0]?.series.length === 3);
+  const dashes = await lab("(lab) => lab.viewer.panels.overTime.plots[0].series.slice(1).map(({ dash }) => (dash ?? []).join())");
+  assert.equal(new Set(dashes).size, dashes.length, "lines are told apart without their colours");
   await page.locator(".cv-engine-b").selectOption("");
   await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 1);
   // "None" is a choice like any other: the next run has no second engine either.
@@ -289,6 +292,29 @@ test("Lab_LooksOnFromTheSamePlace_UntilAnotherSceneIsOpened", async () => {
   await openMode("course/impulse");
   await openMode("course/octree");
   assert.deepEqual(await camera(), first);
+});
+
+test("Lab_SavesAPictureWithTheEnginesNames", async () => {
+  await openMode("course/thin-slab");
+  // Where the second half begins, its name is written over the picture.
+  const [drawn, ...others] = await lab(`(lab) => {
+    const { viewer } = lab;
+    viewer.paint();
+    const { stage, theme } = viewer;
+    const named = stage.withNames(theme);
+    const bare = Object.assign(document.createElement("canvas"), { width: named.width, height: named.height });
+    bare.getContext("2d").drawImage(stage.canvas, 0, 0);
+    const differ = (left, top, width, height) => {
+      const [a, b] = [named, bare].map((canvas) => canvas.getContext("2d").getImageData(left, top, width, height).data);
+      return a.reduce((sum, x, k) => sum + (x === b[k] ? 0 : 1), 0);
+    };
+    const scale = named.width / stage.canvas.clientWidth;
+    return [stage.panes.map(({ part }) => differ(part.left, part.top, Math.round(150 * scale), Math.round(40 * scale))),
+      differ(0, named.height >> 1, named.width, named.height >> 1)];
+  }`);
+  assert.equal(drawn.length, 2);
+  drawn.forEach((count) => assert.ok(count > 100, `${drawn}`));
+  assert.deepEqual(others, [0], "nothing else is written");
 });
 
 test("Lab_TellsTheEnginesOwnPairTests", async () => {

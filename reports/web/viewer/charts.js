@@ -7,6 +7,8 @@ import { language } from "./words/words.js";
 const kTold = [...kParts, "lost", "added"];
 const kBelowZero = { lost: "gained", added: "taken" };
 const kDrawnMomenta = 150;
+// The lines of both runs, the whole energy and the translation's: to be told apart without their colours.
+const kDashes = [[undefined, [5, 4]], [[14, 5], [2, 4]]];
 
 /** A stacked bar for each run, its parts told in words beside it. */
 export class EnergyBars {
@@ -122,9 +124,10 @@ export class OverTime {
     const colours = [css(theme.velocity), css(theme.impulse)];
     const lines = motions.flatMap((motion, index) => {
       const total = motion.translation.map((x, k) => x + motion.rotation[k] + motion.potential[k]);
-      const line = { label: motion.about.label, list: total, stroke: colours[index] };
+      const [whole, translation] = kDashes[index];
+      const line = { label: words.label(motion.about.label), list: total, stroke: colours[index], dash: whole };
       if (total.every((x, k) => x === motion.translation[k])) return [line];
-      return [line, { label: `${motion.about.label}: ${words.energies.translation}`, list: motion.translation, stroke: colours[index], dash: [5, 4] }];
+      return [line, { label: `${words.label(motion.about.label)}: ${words.energies.translation}`, list: motion.translation, stroke: colours[index], dash: translation }];
     });
     make_plot(words.plots.energy, lines, false);
     if (motions.length === 2) {

@@ -1,6 +1,7 @@
 // The canvas: its size, its painter, its camera, and what a pointer does on it.
 
 import { Camera, pick } from "./camera.js";
+import { css } from "./colours.js";
 import { make } from "./dom.js";
 import { Paint2d } from "./paint_2d.js";
 import { PaintGl } from "./paint_gl.js";
@@ -10,6 +11,7 @@ const kClick_px = 5;        // a pointer that moved less was a click
 const kTap_px = 12;         // a finger is not as steady
 const kLongPress_ms = 450;  // a finger that rests so long on a ball is a click of the right button
 const kRight = 2;
+const kName_px = 14;        // the height of a name in a saved picture
 
 export class Stage {
   /** @param asked  changed(): draw anew; clicked({ball, button, shift}); */
@@ -157,6 +159,24 @@ export class Stage {
       label.style.top = `${part.top / scale}px`;
       return label;
     }));
+  }
+
+  /** What was just painted, with the names of its parts in it, as a canvas of its own. */
+  withNames(theme) {
+    const { width, height } = this.canvas;
+    const whole = make("canvas", { width, height });
+    const context = whole.getContext("2d");
+    context.drawImage(this.canvas, 0, 0);
+    const size = kName_px * width / Math.max(this.canvas.clientWidth, 1);
+    context.font = `${size}px system-ui, sans-serif`;
+    context.textBaseline = "top";
+    for (const { name, part } of this.panes) {
+      context.fillStyle = css(theme.paper, 0.8);
+      context.fillRect(part.left + 0.4 * size, part.top + 0.4 * size, context.measureText(name).width + size, 1.5 * size);
+      context.fillStyle = css(theme.ink);
+      context.fillText(name, part.left + 0.9 * size, part.top + 0.65 * size);
+    }
+    return whole;
   }
 
   close() {

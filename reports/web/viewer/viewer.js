@@ -223,7 +223,7 @@ export class Viewer {
   savePng() {
     this.stage.quality = 1;
     this.paint();
-    this.stage.canvas.toBlob((blob) => save(`${this.fileName}.png`, blob), "image/png");
+    this.stage.withNames(this.theme).toBlob((blob) => save(`${this.fileName}.png`, blob), "image/png");
   }
 
   get fileName() { return this.playback.scene.id.replaceAll(/[^\w.-]+/g, "-"); }
