@@ -255,6 +255,10 @@ test("Lab_ShowsAChangedBallAtOnce_BetweenTwoFrames", async () => {
   const after = await lab("(lab) => lab.viewer.paint() ?? [lab.viewer.clock.time, lab.viewer.bodies.masses[1], lab.viewer.bodies.radii[1]]");
   [1.005, 1.1 * before[0], 1.05 * before[1]].forEach((wanted, k) => assert.ok(Math.abs(after[k] - wanted) < 1e-12, `${after}`));
   await page.waitForFunction(() => document.querySelector(".lab-changed").textContent === "Ball 1: 2.2 kg, radius 0.336 m");
+  await page.locator(".cv-engine-b").selectOption("carom:toi");
+  await page.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.motions.length === 2);
+  assert.ok(await lab("(lab) => lab.viewer.paint() ?? lab.viewer.bodies.radii[1]") > before[1], "nor does another engine make it small again");
+  await page.locator(".cv-engine-b").selectOption("");
 });
 
 test("Lab_PausesBySpace_AfterAClickOnASwitch_AndShutsTheHelpByTheKeyThatOpensIt", async () => {

@@ -19,6 +19,7 @@ root = sign(m1 * vn1 + m2 * vn2) * sqrt(max(q, 0))
 x = (-m2 * w + root) / (m1 + m2)` },
 ];
 
+const kRows = 3;
 const kLawKeys = ["normal", "normal_1", "normal_2", "tangential", "tangential_1", "tangential_2"];
 
 /** A line as it was typed or as it stands in a law file: a name and an expression, with quotation marks or without. */
@@ -44,11 +45,11 @@ export class LawBox {
   constructor(tried) {
     this.tried = tried;
     this.normal = make("input", { type: "text", className: "lab-normal", value: kExamples[0].normal, spellcheck: false, autocapitalize: "off" });
-    this.definitions = make("textarea", { className: "lab-let", rows: 4, spellcheck: false });
+    this.definitions = make("textarea", { className: "lab-let", rows: kRows, spellcheck: false });
     this.example = make("select", { className: "lab-example" });
     this.example.addEventListener("change", () => {
       const found = kExamples.find(({ id }) => id === this.example.value);
-      if (found) [this.normal.value, this.definitions.value] = [found.normal, found.definitions];
+      if (found) this.fill(found);
     });
     this.try = button("lab-try", () => this.run());
     this.remove = button("lab-untry", () => {
@@ -70,8 +71,14 @@ export class LawBox {
 
   get law() { return { normal: this.normal.value, definitions: this.definitions.value }; }
 
+  fill({ normal, definitions = "" }) {
+    this.normal.value = normal;
+    this.definitions.value = definitions;
+    this.definitions.rows = Math.max(definitions.split("\n").length, kRows);
+  }
+
   set(law) {
-    [this.normal.value, this.definitions.value] = [law.normal, law.definitions ?? ""];
+    this.fill(law);
     this.element.open = true;
   }
 

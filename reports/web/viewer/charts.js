@@ -23,7 +23,7 @@ export class EnergyBars {
     motions.forEach((motion, index) => {
       const energies = energiesAt(motion, time);
       const row = this.rows[index];
-      row.name.textContent = motion.about.label;
+      row.name.textContent = words.label(motion.about.label);
       const whole = Math.max(energies.start, energies.start + energies.added, energies.total) || 1;
       for (const part of kTold) {
         const value = energies[part];

@@ -58,7 +58,7 @@ export class Values {
       `(${momentum.map((x) => language.number(x, 5)).join("; ")})`);
     const line = (name, cells) => make("tr", {}, make("th", { scope: "row" }, name), ...cells);
     return make("table", { className: "cv-sums" }, make("tbody", {},
-      line("", motions.map((motion) => make("th", { scope: "col" }, motion.about.label))),
+      line("", motions.map((motion) => make("th", { scope: "col" }, words.label(motion.about.label)))),
       line(words.sums.impacts, motions.map((motion, k) => make("td", { className: "cv-impacts", "data-value": String(motion.counted[states[k].frame]) }, String(motion.counted[states[k].frame])))),
       line(words.sums.momentum, all.map((sum) => told(sum.momentum.slice(0, axes)))),
       line(words.sums.kinetic, all.map((sum) => cell(sum.kinetic)))));

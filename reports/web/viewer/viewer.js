@@ -32,8 +32,8 @@ export class Viewer {
    * @param options  engines: labels of the first and the second run; onBall({ball, button, shift, time}): a ball was clicked;
    *                 choices: labels that may be chosen although the playback lacks them; onEngines([a, b], missing): these
    *                 were chosen, and the playback may lack one, which is then to be run;
-   *                 changedAt: the time at which somebody has just changed a ball, s;
-   *                 time, toggles, layout, speed, boxes, camera: as an earlier viewer's state(); autoplay; global: keys of the whole page
+   *                 changedAt: the time at which somebody has changed a ball last, s;
+   *                 time, toggles, layout, speed, boxes, camera, changedAt: as an earlier viewer's state(); autoplay; global: keys of the whole page
    */
   static async mount(host, json, options = {}) {
     const viewer = new Viewer(host, await Playback.read(json), options);
@@ -136,7 +136,7 @@ export class Viewer {
   state() {
     return { time: this.clock.time, toggles: { ...this.toggles }, layout: this.layout, colouring: this.colouring,
       speed: this.clock.speed, engines: this.labels.filter(Boolean), boxes: this.panels.open, autoplay: this.clock.playing,
-      camera: this.stage?.camera.state };
+      camera: this.stage?.camera.state, changedAt: this.options.changedAt };
   }
 
   // --- what a person does

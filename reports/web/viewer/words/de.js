@@ -101,7 +101,7 @@ export const de = {
     ball: "Kugel", heavier: "Schwerer", lighter: "Leichter",
     lawTitle: "Deine eigene Formel", example: "Beginnen mit", normal: "Kraftstoß auf Kugel 2 längs n, in N s:", definitions: "Eigene Namen, einer je Zeile (k = m1 / m2); ebenso tangential, oder normal_1 und normal_2 statt der Zeile darüber:",
     badDefinition: (line, text) => `Zeile ${line}: gefunden „${text}“, erlaubt: Name = Ausdruck, einer je Zeile`,
-    names: "n zeigt von Kugel 1 zu Kugel 2. Namen: m1, m2, m = 1/(1/m1 + 1/m2), r1, r2, vn1, vn2, vn = (v2 − v1)·n (unter 0, wenn sie sich nähern), e, mu. Auf Kugel 1 wirkt der entgegengesetzte Kraftstoß.",
+    names: "n zeigt von Kugel 1 zu Kugel 2. Namen: m1, m2, m = 1/(1/m1 + 1/m2), r1, r2, vn1, vn2, vn = (v2 − v1)·n (unter 0, wenn sie sich nähern), e, mu; längs der Oberfläche vt, mt und beta0. Auf Kugel 1 wirkt der entgegengesetzte Kraftstoß.",
     tryLaw: "Ausprobieren", untryLaw: "Zurück zu den Engines",
     examples: { right: "das richtige Gesetz", course: "das Kursprogramm: −2 m vₙ", "times-e": "e mal der elastische Kraftstoß", "own-mass": "m₁ statt m", sum: "m₁ + m₂ statt m", speeds: "Beträge statt Geschwindigkeiten", squares: "der Kurstext: Impuls mit quadrierten Geschwindigkeiten" },
     rule: "Was gelten muss", kept: "gilt", broken: "verletzt", brokenShare: "verletzt in", worst: "schlimmster Fall", rightWorst: "richtiges Gesetz",

@@ -101,7 +101,7 @@ export const en = {
     ball: "Ball", heavier: "Heavier", lighter: "Lighter",
     lawTitle: "Your own formula", example: "Start from", normal: "Impulse on ball 2 along n, in N s:", definitions: "Names of your own, one a line (k = m1 / m2); so too tangential, or normal_1 and normal_2 in place of the line above:",
     badDefinition: (line, text) => `Line ${line}: found "${text}", allowed: name = expression, one a line`,
-    names: "n points from ball 1 to ball 2. Names: m1, m2, m = 1/(1/m1 + 1/m2), r1, r2, vn1, vn2, vn = (v2 − v1)·n (below 0 as they approach), e, mu. The opposite impulse acts on ball 1.",
+    names: "n points from ball 1 to ball 2. Names: m1, m2, m = 1/(1/m1 + 1/m2), r1, r2, vn1, vn2, vn = (v2 − v1)·n (below 0 as they approach), e, mu; along the surface vt, mt and beta0. The opposite impulse acts on ball 1.",
     tryLaw: "Try it", untryLaw: "Back to the engines",
     examples: { right: "the right law", course: "the course program: −2 m vₙ", "times-e": "e times the elastic impulse", "own-mass": "m₁ in place of m", sum: "m₁ + m₂ in place of m", speeds: "speeds instead of velocities", squares: "the course text: momentum with squared speeds" },
     rule: "What must hold", kept: "kept", broken: "broken", brokenShare: "broken in", worst: "worst", rightWorst: "the right law",
