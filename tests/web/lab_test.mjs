@@ -443,6 +443,14 @@ test("Lab_SharesASceneByItsLink", async () => {
   await other.goto(link);
   await other.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.stage);
   assert.equal(await other.locator(".lab-toml").inputValue(), toml);
+  // An address that is typed or followed in the same page, a broken one, and a broken one to begin with.
+  await other.evaluate(() => { location.hash = "#m=course%2Foctree"; });
+  await other.waitForFunction(() => document.querySelector('.lab-mode[data-id="course/octree"][aria-current]'));
+  await other.evaluate(() => { location.hash = "#s=broken"; });
+  await other.waitForFunction(() => document.querySelector("main > .lab-error").textContent.includes("no scene"));
+  await other.reload();
+  await other.waitForFunction(() => document.getElementById("lab").caromLab.viewer?.stage);
+  await other.waitForFunction(() => document.querySelector("main > .lab-error").textContent.includes("no scene"));
   await other.close();
 });
 

@@ -62,13 +62,22 @@ class Lab {
     this.engines = this.engines.map(({ label }) => label);
     this.menu.fill(this.modes);
     this.say();
+    if (!await this.openAddress()) {
+      const { textContent } = this.error;
+      await this.openMode(Menu.first(this.modes)?.id);
+      this.error.textContent = textContent;
+    }
+    addEventListener("hashchange", () => this.openAddress());
+  }
+
+  /** Opens the scene or the mode of the address. @returns whether it has one that can be read */
+  async openAddress() {
+    const mode = /^#m=(.+)$/.exec(location.hash)?.[1];
     const shared = await sharedIn(location.hash);
     if (shared) await this.openShared(shared);
-    else await this.openMode(decodeURIComponent(/^#m=(.+)$/.exec(location.hash)?.[1] ?? "") || Menu.first(this.modes)?.id);
-    addEventListener("hashchange", async () => {
-      const next = await sharedIn(location.hash);
-      if (next) this.openShared(next);
-    });
+    else if (mode) await this.openMode(decodeURIComponent(mode));
+    else if (location.hash.startsWith("#s=")) this.error.textContent = language.words.lab.badLink;
+    return Boolean(this.viewer);
   }
 
   // --- scenes

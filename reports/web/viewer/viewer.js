@@ -33,14 +33,15 @@ export class Viewer {
    *                 choices: labels that may be chosen although the playback lacks them; onEngines([a, b], missing): these
    *                 were chosen, and the playback may lack one, which is then to be run;
    *                 changedAt: the time at which somebody has changed a ball last, s;
-   *                 time, toggles, layout, speed, boxes, camera, changedAt: as an earlier viewer's state(); autoplay; global: keys of the whole page
+   *                 time, toggles, layout, speed, boxes, camera, changedAt, playing: as an earlier viewer's state();
+   *                 autoplay: unless less motion is asked for; global: keys of the whole page
    */
   static async mount(host, json, options = {}) {
     const viewer = new Viewer(host, await Playback.read(json), options);
     await viewer.choose(viewer.labels[0], viewer.labels[1]);
     viewer.mounted = true;
     if (options.time) viewer.goTo(options.time);
-    if (options.autoplay && !matchMedia("(prefers-reduced-motion: reduce)").matches) viewer.toggle();
+    if (options.playing || (options.autoplay && !matchMedia("(prefers-reduced-motion: reduce)").matches)) viewer.toggle();
     return viewer;
   }
 
@@ -135,7 +136,7 @@ export class Viewer {
   /** What another viewer needs to go on where this one is. */
   state() {
     return { time: this.clock.time, toggles: { ...this.toggles }, layout: this.layout, colouring: this.colouring,
-      speed: this.clock.speed, engines: this.labels.filter(Boolean), boxes: this.panels.open, autoplay: this.clock.playing,
+      speed: this.clock.speed, engines: this.labels.filter(Boolean), boxes: this.panels.open, playing: this.clock.playing,
       camera: this.stage?.camera.state, changedAt: this.options.changedAt };
   }
 

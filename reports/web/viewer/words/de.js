@@ -95,7 +95,7 @@ export const de = {
   lab: {
     title: "Carom-Labor", lead: "Kugeln stoßen sich in den Engines deiner Wahl, nebeneinander. Nichts verlässt diesen Rechner.",
     skip: "Zum Bild", changed: (ball, mass, radius) => `Kugel ${ball}: ${mass} kg, Radius ${radius} m`,
-    modes: "Modi", otherScenes: "Alle anderen Szenen", running: "Die Engines rechnen …", shared: "Der Link steht in der Adresszeile und in der Zwischenablage.",
+    modes: "Modi", otherScenes: "Alle anderen Szenen", running: "Die Engines rechnen …", badLink: "Der Link in der Adresse ist beschädigt: Er enthält keine Szene.", shared: "Der Link steht in der Adresszeile und in der Zwischenablage.",
     click: "Ein Klick auf eine Kugel", tools: { choose: "wählt sie", heavier: "macht sie schwerer (rechte Taste oder lange drücken: leichter)", lighter: "macht sie leichter" },
     byHowMuch: { heavier: "+10 % Masse, +5 % Radius", lighter: "−10 % Masse, −5 % Radius" },
     ball: "Kugel", heavier: "Schwerer", lighter: "Leichter",

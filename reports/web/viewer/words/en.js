@@ -95,7 +95,7 @@ export const en = {
   lab: {
     title: "Carom lab", lead: "Balls collide in the engines of your choice, side by side. Nothing leaves this machine.",
     skip: "To the picture", changed: (ball, mass, radius) => `Ball ${ball}: ${mass} kg, radius ${radius} m`,
-    modes: "Modes", otherScenes: "All other scenes", running: "The engines run …", shared: "The link is in the address bar and in the clipboard.",
+    modes: "Modes", otherScenes: "All other scenes", running: "The engines run …", badLink: "The link in the address is broken: it holds no scene.", shared: "The link is in the address bar and in the clipboard.",
     click: "A click on a ball", tools: { choose: "chooses it", heavier: "makes it heavier (right button or long press: lighter)", lighter: "makes it lighter" },
     byHowMuch: { heavier: "+10 % mass, +5 % radius", lighter: "−10 % mass, −5 % radius" },
     ball: "Ball", heavier: "Heavier", lighter: "Lighter",
