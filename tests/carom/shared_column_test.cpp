@@ -17,9 +17,7 @@ TEST(SharedColumn, HoldsWhatAnArrayHolds_AlikeAndNot) {
     Column<double> spare;
     column.reorder(order, spare, Threads());
     column.set(1, 0.5);
-    std::vector<double> expected;
-    for (const std::uint32_t from : order) expected.push_back(array[from]);
-    expected[1] = 0.5;
+    const std::vector<double> expected = {array[order[0]], 0.5, array[order[2]], array[order[3]]};
     for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(column[i], expected[i]) << different;
     const Column<double> each = column.each();
     EXPECT_EQ(std::vector<double>(each.begin(), each.end()), expected) << different;
