@@ -111,7 +111,7 @@ class Cells {
   /// @param largest  m, the radius that none exceeds
   Cells(const Box& box, int dimension, std::size_t count, double largest)
       : corner_(box.min),
-        extent_m_((box.max - box.min).maxCoeff()),
+        per_m_(1.0 / (box.max - box.min).maxCoeff()),
         largest_m_(largest),
         grid_(as_many_as(count, box, dimension)),
         cells_(grid_.size()) {}
@@ -141,13 +141,14 @@ class Cells {
     *link = balls[ball].next;
   }
 
-  /// Calls visit(ball) for every ball that is in the cell of another grid where `at` is or in one around it.
+  /// Calls visit(ball) for every ball in the box that is in the cell of another grid where `at` is or in one
+  /// around it, and for some outside of the box, which that grid counts to the cells beside.
   template <class Visit>
   void around(const Vec3& at, const Grid& other, const Column<Placed>& balls, Visit&& visit) const {
     const Grid::Place centre = other.place(at);
     const Vec3 low = other.corner(centre, -1);
     const Vec3 high = other.corner(centre, 2);
-    const Rough error = Rough::Constant(static_cast<float>(error_m(0.0)));
+    const Rough error = Rough::Constant(rough(error_m(0.0)));
     const Box3f outer(rough(low) - error, rough(high) + error);
     const Box3f inner(rough(low) + error, rough(high) - error);
     grid_.for_each_between(low, high, [&](std::size_t index) {
@@ -173,8 +174,8 @@ class Cells {
     // The sum is rounded, and nobody may be left out by it.
     const double reach = std::nextafter(room + largest_m_, std::numeric_limits<double>::infinity());
     const double error = error_m(reach);
-    const auto outer = static_cast<float>(room + error);
-    const auto inner = static_cast<float>(balls[ball].size - error);
+    const float outer = rough(room + error);
+    const float inner = rough(balls[ball].size - error);
     bool through = true;
     grid_.for_each_between(at - Vec3::Constant(reach), at + Vec3::Constant(reach), [&](std::size_t index) {
       const Cell& cell = cells_[index];
@@ -209,7 +210,9 @@ class Cells {
 
  private:
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
-  using Rough = Eigen::Vector3f;  ///< m, from the box's corner
+  /// From the box's corner, by its longest side: in a unit of the scene's own nothing is too large or too
+  /// small for single precision.
+  using Rough = Eigen::Vector3f;
   using Box3f = Eigen::AlignedBox3f;
 
   /// A ball, or none, which is near nothing.
@@ -238,16 +241,17 @@ class Cells {
   /// How far a rough distance may be off, with one of two rough sizes added: with u = 2⁻²⁴ each of two places
   /// errs by √3 u of the longest side, their difference, its square and the root of that by 5 u of what comes
   /// out, and sizes and their sum by 2 u of the reach. That is less than 11 u of both together, and 16 u are
-  /// taken. @pre squares of the sizes are normal numbers in single precision: balls of 10⁻¹⁵ m and up
-  double error_m(double reach) const { return 0x1p-20 * (extent_m_ + reach); }
+  /// taken.
+  double error_m(double reach) const { return 0x1p-20 * (1.0 / per_m_ + reach); }
 
   Slot slot_of(std::uint32_t ball, const Column<Placed>& balls) const {
-    return {rough(balls[ball].position), static_cast<float>(balls[ball].size), ball};
+    return {rough(balls[ball].position), rough(balls[ball].size), ball};
   }
-  Rough rough(const Vec3& at) const { return (at - corner_).cast<float>(); }
+  Rough rough(const Vec3& at) const { return ((at - corner_) * per_m_).cast<float>(); }
+  float rough(double length_m) const { return static_cast<float>(length_m * per_m_); }
 
   Vec3 corner_;
-  double extent_m_;  ///< the longest side of the box
+  double per_m_;  ///< 1/m, of the longest side of the box
   double largest_m_;
   Grid grid_;
   Column<Cell> cells_;
