@@ -63,9 +63,9 @@ class Lab {
     this.menu.fill(this.modes);
     this.say();
     if (!await this.openAddress()) {
-      const { textContent } = this.error;
+      const { textContent, lang } = this.error;
       await this.openMode(Menu.first(this.modes)?.id);
-      this.error.textContent = textContent;
+      this.tellError(textContent, lang);
     }
     addEventListener("hashchange", () => this.openAddress());
   }
@@ -76,7 +76,7 @@ class Lab {
     const shared = await sharedIn(location.hash);
     if (shared) await this.openShared(shared);
     else if (mode) await this.openMode(decodeURIComponent(mode));
-    else if (location.hash.startsWith("#s=")) this.error.textContent = language.words.lab.badLink;
+    else if (location.hash.startsWith("#s=")) this.tellError(language.words.lab.badLink);
     return Boolean(this.viewer);
   }
 
@@ -197,7 +197,7 @@ class Lab {
     host.caromViewer = this.viewer;
     this.say();
     giveFocusBack();
-    this.error.textContent = failed.map((run) => language.words.notThere(language.words.label(run.label), run.reason || run.status)).join("\n");
+    this.tellError(failed.map((run) => language.words.notThere(language.words.label(run.label), run.reason || run.status)).join("\n"));
   }
 
   choices() {
@@ -288,10 +288,16 @@ class Lab {
       try {
         await work();
       } catch (error) {
+        told.lang = "en"; // the server's words
         told.textContent = error.message;
       }
     });
     return this.queue;
+  }
+
+  tellError(text, lang = language.id) {
+    this.error.lang = lang;
+    this.error.textContent = text;
   }
 
   // --- words
