@@ -288,7 +288,7 @@ class Lab {
       try {
         await work();
       } catch (error) {
-        told.lang = "en"; // the server's words
+        told.lang = error.lang ?? "en"; // the server's words are English
         told.textContent = error.message;
       }
     });
