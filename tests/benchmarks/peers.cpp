@@ -6,7 +6,6 @@
 //   carom-peers weigh EVOLVER BALLS   sets up a gas, takes ten steps and ends: for its memory to be measured
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -25,6 +24,7 @@
 #include "tests/benchmarks/speed/processes.h"
 #include "tests/benchmarks/speed/race.h"
 #include "tests/benchmarks/speed/scenes.h"
+#include "tests/support/folder.h"
 #include "trajectory/cpu_time.h"
 
 namespace carom::benchmark {
@@ -236,28 +236,9 @@ void weigh_balls(const Effort& effort, Findings& findings) {
        "bytes", false, 200.0, bytes});
 }
 
-/// Files that go with it.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / fmt::format("carom-peers-{}", getpid())) {
-    fs::create_directories(path_);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { fs::remove_all(path_); }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    write_file(path_ / name, text);
-    return path_ / name;
-  }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
-
 /// The CPU time of a comparison that is not its engines' stepping, by that.
-double harness_share(const Folder& folder, const fs::path& scene, std::vector<std::string> engines) {
+double harness_share(const test::TestFolder& folder, const fs::path& scene,
+                     std::vector<std::string> engines) {
   const fs::path json = folder / "result.json";
   std::vector<std::string> words = {
       program_prefix() / "bin/carom", "run", scene, "--quiet", "-j", "1", "--json", json};
@@ -276,9 +257,11 @@ double harness_share(const Folder& folder, const fs::path& scene, std::vector<st
 
 void time_the_harness(const Effort& effort, Findings& findings) {
   say("the harness");
-  const Folder folder;
-  const fs::path scene = folder.write("scene/gas.toml", toml_of(gas(3), effort.thousand));
-  const fs::path million = folder.write("scene/million.toml", toml_of(gas(3), effort.most_balls));
+  const test::TestFolder folder;
+  const fs::path scene = folder / "scene/gas.toml";
+  write_file(scene, toml_of(gas(3), effort.thousand));
+  const fs::path million = folder / "scene/million.toml";
+  write_file(million, toml_of(gas(3), effort.most_balls));
   const std::string one_run = fmt::format("{} balls × 1000 steps at 100 frames", effort.thousand);
   Samples all;
   Samples own;

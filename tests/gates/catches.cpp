@@ -1,7 +1,6 @@
 #include "tests/gates/catches.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,6 +10,7 @@
 #include "app/commands.h"
 #include "core/files.h"
 #include "engine/modules.h"
+#include "tests/support/folder.h"
 
 namespace carom::gates {
 
@@ -23,8 +23,8 @@ constexpr std::string_view kEngine = "plain";
 /// The runs of one scene, as `carom check --json` writes them.
 Json checked(const std::filesystem::path& modules, const std::string& scene,
              const std::vector<std::string>& engines) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / fmt::format("carom-catches-{}.json", getpid());
+  const test::TestFolder folder;
+  const std::filesystem::path file = folder / "results.json";
   Options options;
   options.command = "check";
   options.scenes = {scene};
@@ -34,9 +34,7 @@ Json checked(const std::filesystem::path& modules, const std::string& scene,
   options.parallel = 2;
   options.quiet = true;
   compare_command(options);
-  Json runs = Json::parse(read_file(file)).at("scenes").at(0).at("runs");
-  std::filesystem::remove(file);
-  return runs;
+  return Json::parse(read_file(file)).at("scenes").at(0).at("runs");
 }
 
 const Catcher* catcher_of(std::string_view defect) {

@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "core/files.h"
 #include "tests/gates/catches.h"
+#include "tests/support/folder.h"
 
 // The gates are themselves tested: a right engine passes them, and every broken one is caught by the gate
 // whose business it is.
@@ -44,7 +45,8 @@ TEST(Gates, EveryRowOfTheTable_HasItsBrokenEngine) {
 
 /// Else the broken ones would be caught for what is wrong with all of them.
 TEST(Gates, TheUnbrokenEngine_PassesAllThatItCanRun) {
-  const std::string file = (fs::path(testing::TempDir()) / "carom-unbroken.json").string();
+  const test::TestFolder folder;
+  const std::string file = (folder / "unbroken.json").string();
   Options options;
   options.command = "check";
   options.scenes = {"course/", "flight/", "friction/", "impact/", "line/", "wall/"};
@@ -64,7 +66,6 @@ TEST(Gates, TheUnbrokenEngine_PassesAllThatItCanRun) {
     EXPECT_EQ(run.at("verdict"), "pass") << scene.at("id") << " " << run.at("reason") << run.at("gates");
     passed.insert(scene.at("id"));
   }
-  fs::remove(file);
   for (const Catcher& row : kCatchers) EXPECT_TRUE(passed.contains(std::string(row.scene))) << row.scene;
 }
 

@@ -18,6 +18,7 @@
 #include "reference/measured/fluid.h"
 #include "reference/measured/measure.h"
 #include "reference/measured/relaxation.h"
+#include "tests/support/folder.h"
 
 // Carom, its evolvers and the exact solver against what others have published, in runs of their own.
 
@@ -217,7 +218,8 @@ TEST(Measured, EveryPublication_NamesItsSource_OrSaysWhyNot) {
 }
 
 TEST(Measured, BadData_IsNamedWithItsPlace) {
-  const std::string file = testing::TempDir() + "bad-publication.toml";
+  const test::TestFolder folder;
+  const std::string file = (folder / "bad-publication.toml").string();
   const std::string head = "title = \"t\"\nauthors = \"a\"\nnote = \"n\"\n[[value]]\nname = \"v\"\n";
   write_file(file, head + "quantity = \"colour\"\n");
   EXPECT_THAT([&] { read_publication(file); },

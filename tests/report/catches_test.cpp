@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/files.h"
+#include "tests/support/folder.h"
 
 namespace carom::test {
 namespace {
@@ -26,12 +27,12 @@ std::string chapter(const fs::path& file) {
 
 class CatchesChapter : public testing::Test {
  protected:
-  ~CatchesChapter() override { fs::remove(file_); }
   std::string of(const std::string& text) const {
     write_file(file_, text);
     return chapter(file_);
   }
-  fs::path file_ = fs::path(testing::TempDir()) / "carom-catches-chapter.json";
+  test::TestFolder folder_;
+  fs::path file_ = folder_ / "catches.json";
 };
 
 TEST_F(CatchesChapter, ShowsWhatIsBroken_AndWhatCatchesIt) {

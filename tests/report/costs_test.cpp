@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "tests/report/cells.h"
+#include "tests/support/folder.h"
 
 namespace carom::test {
 namespace {
@@ -49,8 +50,6 @@ constexpr const char* kCosts = R"({
 /// A file in a folder of the test's own, gone with it.
 class CostsChapter : public testing::Test {
  protected:
-  ~CostsChapter() override { fs::remove_all(folder_); }
-
   void write(const std::string& text) { write_file(file(), text); }
   fs::path file() const { return folder_ / "costs.json"; }
 
@@ -62,9 +61,7 @@ class CostsChapter : public testing::Test {
   }
 
  private:
-  fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      (std::string("carom-costs-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  test::TestFolder folder_;
 };
 
 TEST_F(CostsChapter, ShowsInstructionsPerBallAndStep_AndByThoseOfTheBareScene) {

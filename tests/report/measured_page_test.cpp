@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "report/page/measured.h"
+#include "tests/support/folder.h"
 
 namespace carom::test {
 namespace {
@@ -15,7 +16,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 std::string measured_chapter_of(const std::string& text) {
-  const std::string file = testing::TempDir() + "published-for-a-page.json";
+  const TestFolder folder;
+  const std::filesystem::path file = folder / "published.json";
   write_file(file, text);
   pugi::xml_document document;
   Node body = document.append_child("body");

@@ -7,6 +7,7 @@
 #include "core/files.h"
 #include "report/page/orders.h"
 #include "tests/report/cells.h"
+#include "tests/support/folder.h"
 
 namespace carom::test {
 namespace {
@@ -23,9 +24,9 @@ std::string orders_chapter_of(const std::filesystem::path& file) {
 }
 
 std::string orders_chapter_of_text(const std::string& text) {
-  const std::string file = testing::TempDir() + "orders-for-a-page.json";
-  write_file(file, text);
-  return orders_chapter_of(std::filesystem::path(file));
+  const test::TestFolder folder;
+  write_file(folder / "orders.json", text);
+  return orders_chapter_of(folder / "orders.json");
 }
 
 TEST(OrdersChapter, ShowsClaimMeasurementFitAndErrors_OfEachEvolver) {
@@ -56,8 +57,8 @@ TEST(OrdersChapter, NamesTheFile_ThatItCannotUse) {
         R"([{"scene": "a/b", "evolver": "toi", "refuses": "", "claimed": 1, "order": 1, "r_squared": 1,
              "errors": []}])"}) {
     EXPECT_THAT([&] { orders_chapter_of_text(bad); },
-                testing::ThrowsMessage<InputError>(AllOf(HasSubstr("orders-for-a-page.json"),
-                                                         HasSubstr("tests/benchmarks/run writes it anew"))))
+                testing::ThrowsMessage<InputError>(
+                    AllOf(HasSubstr("orders.json"), HasSubstr("tests/benchmarks/run writes it anew"))))
         << bad;
   }
 }

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/files.h"
 #include "core/random.h"
+#include "tests/support/folder.h"
 
 namespace carom {
 namespace {
@@ -447,9 +448,8 @@ class PageWithViewer : public testing::Test {
     write_file(folder_ / "report.js", "/* the viewer */");
     write_file(folder_ / "report.css", "/* its style */");
   }
-  ~PageWithViewer() override { std::filesystem::remove_all(folder_); }
 
-  std::string page_of(const Results& results) const { return render_page(results, kWeb, folder_); }
+  std::string page_of(const Results& results) const { return render_page(results, kWeb, folder_.path()); }
 
   /// The playbacks in a page.
   static std::vector<std::string> playbacks(const std::string& page) {
@@ -463,7 +463,7 @@ class PageWithViewer : public testing::Test {
   }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "carom-viewer-of-page-test";
+  test::TestFolder folder_;
 };
 
 TEST_F(PageWithViewer, HoldsTheViewer_AndARunOfEveryEngineThatEndedWell) {

@@ -7,6 +7,7 @@
 #include "core/files.h"
 #include "report/page/speed.h"
 #include "tests/report/cells.h"
+#include "tests/support/folder.h"
 
 namespace carom::test {
 namespace {
@@ -24,9 +25,9 @@ std::string speed_chapter_of(const std::filesystem::path& file) {
 }
 
 std::string speed_chapter_of_text(const std::string& text) {
-  const std::string file = testing::TempDir() + "speed-for-a-page.json";
-  write_file(file, text);
-  return speed_chapter_of(std::filesystem::path(file));
+  const test::TestFolder folder;
+  write_file(folder / "speed.json", text);
+  return speed_chapter_of(folder / "speed.json");
 }
 
 constexpr const char* kSpeed = R"({
@@ -75,8 +76,8 @@ TEST(SpeedChapter, NamesTheFile_ThatItCannotUse) {
   for (const char* bad :
        {"{", "[]", "{}", R"({"machine": {"cpu": "a", "cores": 1, "compiler": "b", "build": "c"}})"}) {
     EXPECT_THAT([&] { speed_chapter_of_text(bad); },
-                testing::ThrowsMessage<InputError>(AllOf(HasSubstr("speed-for-a-page.json"),
-                                                         HasSubstr("tests/benchmarks/run writes it anew"))))
+                testing::ThrowsMessage<InputError>(
+                    AllOf(HasSubstr("speed.json"), HasSubstr("tests/benchmarks/run writes it anew"))))
         << bad;
   }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "tests/support/folder.h"
 
 namespace carom {
 
@@ -21,10 +22,7 @@ using ::testing::HasSubstr;
 /// A catalog of four scenes, with things around them that are none.
 class CatalogTest : public ::testing::Test {
  protected:
-  CatalogTest()
-      : folder_(fs::path(::testing::TempDir()) / "carom-catalog" /
-                ::testing::UnitTest::GetInstance()->current_test_info()->name()),
-        catalog_(folder_) {
+  CatalogTest() {
     for (const char* file : {"wall/bounce.toml", "impact/head-on.toml", "impact/head-on-hard.toml",
                              "impact/b.toml", "impact/notes.md", "README.md", "stray.toml"}) {
       touch(file);
@@ -32,7 +30,6 @@ class CatalogTest : public ::testing::Test {
     fs::create_directories(folder_ / "empty");
     fs::create_directories(folder_ / "wall" / "folder.toml");
   }
-  ~CatalogTest() override { fs::remove_all(folder_); }
 
   void touch(const fs::path& file) const {
     fs::create_directories((folder_ / file).parent_path());
@@ -42,7 +39,7 @@ class CatalogTest : public ::testing::Test {
   std::vector<std::string> names(const std::vector<fs::path>& files) const {
     std::vector<std::string> names;
     names.reserve(files.size());
-    for (const fs::path& file : files) names.push_back(fs::relative(file, folder_).string());
+    for (const fs::path& file : files) names.push_back(fs::relative(file, folder_.path()).string());
     return names;
   }
 
@@ -55,8 +52,8 @@ class CatalogTest : public ::testing::Test {
     return "no error";
   }
 
-  fs::path folder_;
-  Catalog catalog_;
+  test::TestFolder folder_;
+  Catalog catalog_{folder_.path()};
 };
 
 // An id that begins with another one comes after it: impact/head-on, impact/head-on-hard.

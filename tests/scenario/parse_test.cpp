@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "scenario/catalog.h"
 #include "scenario/features.h"
+#include "tests/support/folder.h"
 #include "tests/support/numbers.h"
 
 namespace carom::test {
@@ -882,12 +883,9 @@ TEST(Parse, SceneWithoutBalls_IsRefused) {
 
 class LoadScene : public ::testing::Test {
  protected:
-  LoadScene() : folder_(std::filesystem::path(::testing::TempDir()) / "carom-load-scene") {
-    std::filesystem::create_directories(folder_ / "my-group");
-  }
-  ~LoadScene() override { std::filesystem::remove_all(folder_); }
+  LoadScene() { std::filesystem::create_directories(folder_ / "my-group"); }
 
-  std::filesystem::path folder_;
+  test::TestFolder folder_;
 };
 
 TEST_F(LoadScene, Id_IsFolderAndName) {
