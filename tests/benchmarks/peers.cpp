@@ -117,6 +117,8 @@ std::vector<Runner> runners(const std::vector<std::string>& engines, const Scena
   return all;
 }
 
+constexpr const char* kPerCollision = "collision, or ball and step of Bullet's";
+
 // The event-driven evolver, by the collision, against a step of Bullet with the same balls.
 // @param in_a_thin_gas  a ball's step of Bullet's where balls have fewer neighbours, in the gas of gas(3)
 void race_from_collision_to_collision(std::size_t balls, const Samples& in_a_thin_gas, const Effort& effort,
@@ -127,8 +129,7 @@ void race_from_collision_to_collision(std::size_t balls, const Samples& in_a_thi
            effort.rounds, effort.shortest_s);
   const Samples& bullet = of(costs, "bullet-f64");
   const Samples& event = of(costs, "carom:event");
-  findings.add(hard_sphere_gas().name, "ball and step", {costs.front()});
-  findings.add(hard_sphere_gas().name, "collision", {costs.back()});
+  findings.add(hard_sphere_gas().name, kPerCollision, costs);
   if (balls <= effort.thousand) return;
   const double limit = balls == 10 * effort.thousand ? 0.8 : 1.5;
   const std::string goal = fmt::format(
@@ -168,7 +169,7 @@ void race_a_million(const Effort& effort, Findings& findings) {
   constexpr int kFewRounds = 3;
   const std::vector<Cost> costs = race({{"carom:event", &scene, Unit::ball_impact}},
                                        std::min(effort.rounds, kFewRounds), effort.shortest_s);
-  findings.add(hard_sphere_gas().name, "collision", costs);
+  findings.add(hard_sphere_gas().name, kPerCollision, costs);
   Samples per_second;
   for (const double ns : costs.front().ns.values) per_second.values.push_back(1e9 / ns);
   findings.goals.push_back(
