@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -55,22 +56,21 @@ class Placement {
     for (std::size_t i = 0; i < count_; ++i) balls_.push_back({anywhere()});
     for (const Ball& ball : scene.balls) balls_.push_back({ball.position, ball.radius});
     for (std::uint32_t i = 0; i < balls_.size(); ++i) {
-      if (i + kAhead < balls_.size()) cells_.foresee(balls_[i + kAhead].position, 0.0);
+      if (i + kAhead < balls_.size()) cells_.fetch(balls_[i + kAhead].position);
       cells_.insert(i, balls_);
     }
-    stirred_.assign(balls_.size(), 0);
+    stirred_.assign(balls_.size(), 1);  // all grow
   }
 
   std::vector<Vec3> run() {
-    std::size_t grown = 0;
-    for (int waited = 0; grown < count_; ++waited) {
+    for (int waited = 0; grown_ < count_; ++waited) {
       if (waited > patience(count_)) {
         throw DoesNotFit(
-            fmt::format("{} of {} balls fit into the box with the rest, and no more do", grown, count_));
+            fmt::format("{} of {} balls fit into the box with the rest, and no more do", grown_, count_));
       }
-      const std::size_t now = sweep();
-      if (now > grown) waited = 0;
-      grown = now;
+      const std::size_t before = grown_;
+      sweep();
+      if (grown_ > before) waited = 0;
     }
     std::vector<Vec3> positions;
     positions.reserve(count_);
@@ -80,53 +80,100 @@ class Placement {
 
  private:
   /// What the search around a ball will read is fetched while so many others have their turn.
-  static constexpr std::uint32_t kAhead = 8;
+  static constexpr std::size_t kAhead = 16;
+
+  /// Where a ball is to be tried.
+  struct Turn {
+    std::uint32_t ball;
+    Cells::Spot near_by;
+    Cells::Spot elsewhere;  ///< of a ball that is not grown
+  };
+  /// Turns that are drawn and not played.
+  struct Hand {
+    std::array<Turn, kAhead> turns;
+    std::size_t size = 0;
+    bool growing = false;  ///< one of the balls is not grown
+  };
 
   /// Two trials for every ball that is not grown, one near by and one anywhere in the box; one near by for
-  /// those around it, so that room opens, and in every kStirAll-th sweep for all. Returns how many balls are
-  /// grown.
-  std::size_t sweep() {
-    std::size_t grown = 0;
+  /// those around it, so that room opens, and in every kStirAll-th sweep for all.
+  ///
+  /// A ball is changed in its own turn alone, so turns can be drawn before those ahead of them are played.
+  void sweep() {
     ++sweeps_;
+    Hand hand;
     for (std::uint32_t i = 0; i < count_; ++i) {
-      const std::uint32_t ahead = i + kAhead;
-      if (ahead < count_ && moves(ahead)) cells_.foresee(balls_[ahead].position, full_[ahead]);
-      if (moves(i)) move(i);
-      if (balls_[i].size >= full_[i]) ++grown;
+      if (!moves(i)) continue;
+      if (hand.size == kAhead || (hand.growing && may_be_put_off(i))) play(hand);
+      if (moves(i)) draw(i, hand);
     }
-    return grown;
+    play(hand);
   }
 
-  /// Whether a ball has a turn in this sweep.
+  /// Whether a ball has a turn in this sweep. One that is stirred for the next before it has its turn in this
+  /// one is put off, unless it grows.
   bool moves(std::uint32_t ball) const {
-    return balls_[ball].size < full_[ball] || stirred_[ball] == sweeps_ || sweeps_ % kStirAll == 0;
+    if (sweeps_ % kStirAll == 0 || stirred_[ball] == sweeps_) return true;
+    return stirred_[ball] > sweeps_ && !grown(ball);
   }
 
-  void move(std::uint32_t ball) {
-    const Placed& placed = balls_[ball];
-    const Vec3 near_by = placed.position + nudge(kStride * full_[ball]);
-    if (placed.size >= full_[ball]) {
-      try_at(ball, near_by);
-      return;
-    }
-    const Vec3 elsewhere = anywhere();
-    cells_.foresee(elsewhere, full_[ball]);
-    try_at(ball, near_by);
-    try_at(ball, elsewhere);
-    if (placed.size >= full_[ball]) return;
-    try_at(ball, placed.position);
-    if (placed.size >= full_[ball]) return;
-    cells_.around(placed.position, stirred_cells_, balls_,
-                  [this](std::uint32_t near) { stirred_[near] = sweeps_ + 1; });
+  bool may_be_put_off(std::uint32_t ball) const { return sweeps_ % kStirAll != 0 && grown(ball); }
+
+  bool grown(std::uint32_t ball) const { return balls_[ball].size >= full_[ball]; }
+
+  void draw(std::uint32_t ball, Hand& hand) {
+    Turn& turn = hand.turns[hand.size++];
+    turn.ball = ball;
+    turn.near_by = cells_.spot(balls_[ball].position + nudge(kStride * full_[ball]), full_[ball]);
+    cells_.fetch(turn.near_by);
+    if (grown(ball)) return;
+    hand.growing = true;
+    turn.elsewhere = cells_.spot(anywhere(), full_[ball]);
+    cells_.fetch(turn.elsewhere);
   }
 
-  void try_at(std::uint32_t ball, const Vec3& at) {
-    const double room = room_at(at, ball);
-    if (!enough(room, ball)) return;
+  void play(Hand& hand) {
+    for (std::size_t i = 0; i < hand.size; ++i) play(hand.turns[i]);
+    hand.size = 0;
+    hand.growing = false;
+  }
+
+  /// The ball is taken out meanwhile, so that it is not in its own way.
+  void play(const Turn& turn) {
+    const std::uint32_t ball = turn.ball;
+    const bool grows = !grown(ball);
     cells_.remove(ball, balls_);
-    balls_[ball].position = at;
-    balls_[ball].size = std::min(room, full_[ball]);
+    if (grows) {
+      grow(turn);
+    } else {
+      try_at(turn.near_by, ball);
+    }
     cells_.insert(ball, balls_);
+    if (!grows) return;
+    if (grown(ball)) {
+      ++grown_;
+    } else {
+      cells_.around(balls_[ball].position, stirred_cells_, balls_,
+                    [this](std::uint32_t near) { stirred_[near] = sweeps_ + 1; });
+    }
+  }
+
+  /// Near by, then elsewhere, then where the ball is. Elsewhere is looked at first: where it has all the room
+  /// there, it does not matter what near by would give.
+  void grow(const Turn& turn) {
+    const std::uint32_t ball = turn.ball;
+    const double room = room_at(turn.elsewhere, ball);
+    if (room < full_[ball]) try_at(turn.near_by, ball);
+    move_to(turn.elsewhere, room, ball);
+    if (!grown(ball)) try_at(cells_.spot(balls_[ball].position, full_[ball]), ball);
+  }
+
+  void try_at(const Cells::Spot& spot, std::uint32_t ball) { move_to(spot, room_at(spot, ball), ball); }
+
+  /// Moves a ball if there is as much room as it fills already.
+  void move_to(const Cells::Spot& spot, double room, std::uint32_t ball) {
+    if (!enough(room, ball)) return;
+    balls_[ball] = {spot.at, std::min(room, full_[ball])};
   }
 
   /// Whether a ball can be moved to where it has this much room.
@@ -134,13 +181,14 @@ class Placement {
 
   /// The largest radius, up to about the ball's full one, that a ball at this place may have; where that is
   /// not enough, anything else that is not.
-  double room_at(const Vec3& at, std::uint32_t ball) const {
+  double room_at(const Cells::Spot& spot, std::uint32_t ball) const {
+    const Vec3& at = spot.at;
     double room = full_[ball];
     for (const Wall& wall : scene_.walls) room = std::min(room, wall.normal.dot(at) - wall.offset);
     for (const Slab& slab : scene_.slabs) room = std::min(room, room_beside(slab, at));
     for (const Barrier& barrier : scene_.barriers) room = std::min(room, room_beside(barrier, at));
     if (!enough(room, ball)) return room;
-    const bool through = cells_.near(at, ball, room, balls_, [&](std::uint32_t other) {
+    const bool through = cells_.near(spot, balls_[ball].size, room, [&](std::uint32_t other) {
       const double distance2 = (at - balls_[other].position).squaredNorm();
       const double reach = room + balls_[other].size;
       // A root for those alone that are near, with more to spare than it rounds.
@@ -178,8 +226,10 @@ class Placement {
   Grid stirred_cells_;        ///< the balls of neighbouring ones are stirred together
   Cells cells_;
   Column<Placed> balls_;
-  std::vector<int> stirred_;  ///< the sweep in which a ball is to be moved, being near one that grows
+  /// The sweep in which a ball is to be moved, for it grows or is near one that does.
+  std::vector<int> stirred_;
   int sweeps_ = 0;
+  std::size_t grown_ = 0;  ///< balls
 };
 
 }  // namespace

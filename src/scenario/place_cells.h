@@ -6,139 +6,84 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <experimental/simd>
 #include <limits>
 #include <utility>
 
 #include "core/large_pages.h"
 #include "core/vec.h"
+#include "scenario/place_grid.h"
 #include "scenario/scenario.h"
 
 namespace carom {
 
-/// A box cut into equal cells, counted along each axis. What is outside of it is counted to the cell beside.
-class Grid {
- public:
-  using Place = std::array<std::int64_t, 3>;
+namespace stdx = std::experimental;
 
-  /// @param width  m, of a cell at least
-  /// @param most  cells along an axis
-  Grid(const Box& box, int dimension, double width, double most) : corner_(box.min) {
-    for (int axis = 0; axis < dimension; ++axis) {
-      const double extent = box.max[axis] - box.min[axis];
-      counts_[static_cast<std::size_t>(axis)] =
-          static_cast<std::int64_t>(std::clamp(std::floor(extent / width), 1.0, most));
-      inverse_width_[axis] = static_cast<double>(counts_[static_cast<std::size_t>(axis)]) / extent;
-      width_[axis] = 1.0 / inverse_width_[axis];
-    }
-  }
-
-  std::size_t size() const { return static_cast<std::size_t>(counts_[0] * counts_[1] * counts_[2]); }
-
-  Place place(const Vec3& at) const {
-    Place place{};
-    for (int axis = 0; axis < 3; ++axis) {
-      // A negative place, which the conversion would round up, is held to 0 like the others.
-      const double cells = (at[axis] - corner_[axis]) * inverse_width_[axis];
-      const auto last = static_cast<double>(counts_[static_cast<std::size_t>(axis)] - 1);
-      place[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(cells, 0.0, last));
-    }
-    return place;
-  }
-
-  std::size_t index(const Place& place) const {
-    return static_cast<std::size_t>((place[2] * counts_[1] + place[1]) * counts_[0] + place[0]);
-  }
-
-  /// The lower corner of the cell that is so many cells farther along each axis.
-  Vec3 corner(const Place& place, std::int64_t farther) const {
-    Vec3 cells;
-    for (int axis = 0; axis < 3; ++axis) {
-      cells[axis] = static_cast<double>(place[static_cast<std::size_t>(axis)] + farther);
-    }
-    return corner_ + cells.cwiseProduct(width_);
-  }
-
-  /// Whether a place is in this cell or in one around it.
-  bool beside(const Place& centre, const Vec3& at) const {
-    const Place other = place(at);
-    bool beside = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) beside = beside && std::abs(other[axis] - centre[axis]) <= 1;
-    return beside;
-  }
-
-  /// Calls visit(index) for every cell that has part in a block, for as long as it returns true.
-  template <class Visit>
-  void for_each_between(const Vec3& low_corner, const Vec3& high_corner, Visit&& visit) const {
-    const Place low = place(low_corner);
-    const Place high = place(high_corner);
-    for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-        const std::size_t row = index({0, y, z});
-        for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-          if (!visit(row + static_cast<std::size_t>(x))) return;
-        }
-      }
-    }
-  }
-
- private:
-  Vec3 corner_;
-  Vec3 inverse_width_ = Vec3::Zero();
-  Vec3 width_ = Vec3::Ones();
-  Place counts_{1, 1, 1};
-};
-
-/// Where a ball is, the radius it has reached, and the next ball of its cell that has no slot there.
-struct Placed {
+/// Where a ball is, and the radius it has reached; in one line of memory.
+struct alignas(32) Placed {
   Vec3 position;
   double size = 0.0;
-  std::uint32_t next = 0;
 };
 
 /// The balls by the cells that they are in.
 ///
 /// Of a million balls, what is around a place lies in memory that no near cache holds, and a search takes as
-/// long as it waits for it. So a cell is one line of memory, in which its first three balls stand themselves,
-/// in single precision: a sieve. Few others are looked at, and foresee() has the lines fetched while other
-/// balls have their turn.
+/// long as it waits for it. So a cell is one line of memory, a sieve: seven balls stand in it, in numbers of
+/// 16 bits, and one instruction looks at all of them. Few others are looked at, and fetch() has the lines
+/// fetched while other balls have their turn. SPEED.md says what that is worth.
 ///
-/// Loading a million balls takes 0.53 of what it took with cells that were chains of balls. With large pages
-/// alone it took 0.93 of that, with one ball in its cell and the others in a chain 0.85, and without
-/// foresee() nothing was gained. It costs a line of memory for each ball while balls are placed.
+/// The trick: places are counted in steps from the box's corner, modulo 2¹⁶, as a clock counts hours. No two
+/// that are compared are half a round apart, so their difference is right, in a box of any size.
 class Cells {
  public:
+  /// A place where a ball is tried, and the cells with all that may be in its way there.
+  struct Spot {
+    Vec3 at;
+    Grid::Block cells;
+  };
+
   /// @param count  of balls there will be
   /// @param largest  m, the radius that none exceeds
   Cells(const Box& box, int dimension, std::size_t count, double largest)
-      : corner_(box.min),
-        per_m_(1.0 / (box.max - box.min).maxCoeff()),
+      : box_(box),
         largest_m_(largest),
-        grid_(as_many_as(count, box, dimension)),
-        cells_(grid_.size()) {}
+        grid_(a_few_in_each(count, box, dimension)),
+        per_m_(kFarthest * kCoarse / (2.0 * largest + grid_.longest_side(dimension))),
+        cells_(grid_.size()),
+        names_(grid_.size()),
+        next_(count, kNone) {}
 
-  void insert(std::uint32_t ball, Column<Placed>& balls) {
-    Cell& cell = cells_[grid_.index(grid_.place(balls[ball].position))];
-    for (Slot& slot : cell.slots) {
-      if (slot.ball != kNone) continue;
-      slot = slot_of(ball, balls);
+  void insert(std::uint32_t ball, const Column<Placed>& balls) {
+    const auto& [position, size] = balls[ball];
+    const std::size_t index = grid_.index(grid_.place(position));
+    Cell& cell = cells_[index];
+    Names& names = names_[index];
+    const std::size_t slot = box_has(position) ? free_slot(cell) : kCrowd;
+    if (slot == kCrowd) {
+      next_[ball] = std::exchange(names[kCrowd], ball);
+      cell.size[kCrowd] = 0;
       return;
     }
-    balls[ball].next = std::exchange(cell.more, ball);
+    names[slot] = ball;
+    cell.size[slot] = static_cast<Size>(size * per_m_ + 1.0);
+    const Code at = code(position);
+    for (std::size_t axis = 0; axis < 3; ++axis) cell.at[axis][slot] = at[axis];
   }
 
-  void remove(std::uint32_t ball, Column<Placed>& balls) {
-    Cell& cell = cells_[grid_.index(grid_.place(balls[ball].position))];
-    for (Slot& slot : cell.slots) {
-      if (slot.ball != ball) continue;
-      slot = Slot();
-      if (cell.more == kNone) return;
-      slot = slot_of(cell.more, balls);
-      cell.more = balls[cell.more].next;
+  void remove(std::uint32_t ball, const Column<Placed>& balls) {
+    const std::size_t index = grid_.index(grid_.place(balls[ball].position));
+    Cell& cell = cells_[index];
+    Names& names = names_[index];
+    for (std::size_t slot = 0; slot < kCrowd; ++slot) {
+      if (names[slot] != ball) continue;
+      names[slot] = kNone;
+      cell.size[slot] = kNobody;
       return;
     }
-    std::uint32_t* link = &cell.more;
-    while (*link != ball) link = &balls[*link].next;
-    *link = balls[ball].next;
+    std::uint32_t* link = &names[kCrowd];
+    while (*link != ball) link = &next_[*link];
+    *link = next_[ball];
+    if (names[kCrowd] == kNone) cell.size[kCrowd] = kNobody;
   }
 
   /// Calls visit(ball) for every ball in the box that is in the cell of another grid where `at` is or in one
@@ -146,115 +91,210 @@ class Cells {
   template <class Visit>
   void around(const Vec3& at, const Grid& other, const Column<Placed>& balls, Visit&& visit) const {
     const Grid::Place centre = other.place(at);
-    const Vec3 low = other.corner(centre, -1);
-    const Vec3 high = other.corner(centre, 2);
-    const Rough error = Rough::Constant(rough(error_m(0.0)));
-    const Box3f outer(rough(low) - error, rough(high) + error);
-    const Box3f inner(rough(low) + error, rough(high) - error);
-    grid_.for_each_between(low, high, [&](std::size_t index) {
+    const Vec3 low = other.corner(centre, -1).cwiseMax(box_.min);
+    const Vec3 high = other.corner(centre, 2).cwiseMin(box_.max);
+    const Grid::Block block = grid_.block(low, high);
+    fetch(block, true);
+    const Code from = code(low);
+    const Code to = code(high);
+    grid_.for_each(block, [&](std::size_t index, const Grid::Place& place) {
       const Cell& cell = cells_[index];
-      for (const Slot& slot : cell.slots) {
-        if (!outer.contains(slot.at)) continue;
-        if (inner.contains(slot.at) || other.beside(centre, balls[slot.ball].position)) visit(slot.ball);
+      const Names& names = names_[index];
+      // By two steps a place is surely on its side of a corner, by one it may be for all that is rounded. In
+      // the cells between the outermost there is nothing to ask.
+      auto inside = cell.size >= Size{0};
+      auto surely = inside;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (place[axis] == block.low[axis]) {
+          const Sizes beyond = stdx::static_simd_cast<Sizes>(cell.at[axis] - from[axis]);
+          inside &= beyond >= Size{-1};
+          surely &= beyond >= Size{2};
+        }
+        if (place[axis] == block.high[axis]) {
+          const Sizes below = stdx::static_simd_cast<Sizes>(to[axis] - cell.at[axis]);
+          inside &= below >= Size{-1};
+          surely &= below >= Size{2};
+        }
       }
-      for (std::uint32_t ball = cell.more; ball != kNone; ball = balls[ball].next) {
+      for (std::size_t slot = 0; slot < kCrowd; ++slot) {
+        if (!inside[slot]) continue;
+        if (surely[slot] || other.beside(centre, balls[names[slot]].position)) visit(names[slot]);
+      }
+      for (std::uint32_t ball = names[kCrowd]; ball != kNone; ball = next_[ball]) {
         if (other.beside(centre, balls[ball].position)) visit(ball);
       }
       return true;
     });
   }
 
-  /// Calls visit(other) for every other ball whose surface may be within `room` of a place, for as long as it
-  /// returns true, and ends where one is surely nearer than the ball's own radius.
+  /// @param room  m, the largest radius that a ball tried there may have
+  Spot spot(const Vec3& at, double room) const {
+    // The sum is rounded, and nobody may be left out by it.
+    const Vec3 reach = Vec3::Constant((room + largest_m_) * (1.0 + 0x1p-50));
+    return {at, grid_.block(at - reach, at + reach)};
+  }
+
+  /// Calls visit(ball) for every ball whose surface may be within `room` of a spot, for as long as it returns
+  /// true, and ends where one surely overlaps a ball of that size there.
+  /// @pre The place is in the box, and size and room are no larger than the largest radius and what the spot
+  /// is for.
   /// @return whether it went through
   template <class Visit>
-  bool near(const Vec3& at, std::uint32_t ball, double room, const Column<Placed>& balls,
-            Visit&& visit) const {
-    const Rough centre = rough(at);
-    // The sum is rounded, and nobody may be left out by it.
-    const double reach = std::nextafter(room + largest_m_, std::numeric_limits<double>::infinity());
-    const double error = error_m(reach);
-    const float outer = rough(room + error);
-    const float inner = rough(balls[ball].size - error);
+  bool near(const Spot& spot, double size, double room, Visit&& visit) const {
+    const Code centre = code(spot.at);
+    const Limits limits(size * per_m_, room * per_m_);
     bool through = true;
-    grid_.for_each_between(at - Vec3::Constant(reach), at + Vec3::Constant(reach), [&](std::size_t index) {
+    grid_.for_each(spot.cells, [&](std::size_t index, const Grid::Place& /*place*/) {
       const Cell& cell = cells_[index];
-      for (const Slot& slot : cell.slots) {
-        const float square = (slot.at - centre).squaredNorm();
-        const float far = outer + slot.size;
-        if (!(square <= far * far) || slot.ball == ball) continue;
-        const float close = inner + slot.size;
-        through = !(close > 0.0F && square < close * close) && visit(slot.ball);
-        if (!through) return false;
+      const auto found = sieve(cell, centre, limits);
+      const bool crowded = cell.size[kCrowd] != kNobody;
+      if (stdx::none_of(found) && !crowded) return true;
+      for (std::size_t slot = 0; slot < kCrowd && through; ++slot) {
+        if (!found[slot]) continue;
+        const float square = squared_steps(cell, slot, centre);
+        const float far = limits.far + static_cast<float>(cell.size[slot]);
+        const float close = limits.close + static_cast<float>(cell.size[slot]);
+        if (square > far * far) continue;
+        through = !(close > 0.0F && square < close * close) && visit(names_[index][slot]);
       }
-      for (std::uint32_t other = cell.more; other != kNone; other = balls[other].next) {
-        if (other == ball) continue;
-        through = visit(other);
-        if (!through) return false;
+      if (!crowded) return through;
+      for (std::uint32_t ball = names_[index][kCrowd]; ball != kNone && through; ball = next_[ball]) {
+        through = visit(ball);
       }
-      return true;
+      return through;
     });
     return through;
   }
 
-  /// Has what near() will read fetched from memory meanwhile.
-  void foresee(const Vec3& at, double room) const {
-    const double reach = room + largest_m_;
-    grid_.for_each_between(at - Vec3::Constant(reach), at + Vec3::Constant(reach), [&](std::size_t index) {
+  /// Has what near() will read fetched from memory meanwhile, and where the ball will stand.
+  void fetch(const Spot& spot) const {
+    fetch(spot.at);
+    fetch(spot.cells, false);
+  }
+  /// Has the cell of a place fetched.
+  void fetch(const Vec3& at) const {
+    const Grid::Place place = grid_.place(at);
+    fetch({place, place}, true);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
+  static constexpr std::size_t kSlots = 8;
+  /// The last slot is for all of the cell that have none: there are too many, or they are outside of the box.
+  static constexpr std::size_t kCrowd = kSlots - 1;
+
+  /// From a place to any ball in the cells that a search there looks at it is along each axis at most as far
+  /// as a cell is long and two balls reach. That is kFarthest coarse steps of 2⁷ steps: the sum of three
+  /// squares, rounded down to 147 below zero, fits into 16 bits, and the number of steps with its sign too.
+  static constexpr double kFarthest = 146.0;
+  static constexpr int kCoarseBits = 7;
+  static constexpr double kCoarse = 1 << kCoarseBits;
+  static_assert(3 * 147 * 147 < 1 << 16 && 147 << kCoarseBits < 1 << 15);
+
+  template <class T>
+  using Lanes = stdx::simd<T, stdx::simd_abi::deduce_t<T, kSlots>>;
+  using Codes = Lanes<std::uint16_t>;
+  /// Steps along each axis, rounded down, modulo 2¹⁶.
+  using Code = std::array<std::uint16_t, 3>;
+  /// Steps, rounded up.
+  using Size = std::int16_t;
+  using Sizes = Lanes<Size>;
+  static constexpr Size kNobody = std::numeric_limits<Size>::min();  ///< of a slot that is free
+
+  struct alignas(64) Cell {
+    std::array<Codes, 3> at = {Codes(0), Codes(0), Codes(0)};
+    Sizes size = kNobody;
+  };
+  static_assert(sizeof(Cell) == 64);
+
+  /// The balls of a cell by their slots; in the last one, the first of a chain.
+  struct alignas(32) Names : std::array<std::uint32_t, kSlots> {
+    Names() { fill(kNone); }
+  };
+
+  /// Two places are each rounded down to a step, so their difference is off by less than one step along an
+  /// axis, and its length by less than √3; by 1.75 coarse steps where that is rounded down once more. A size
+  /// is rounded up by a step at most, and down by less than one to coarse steps. The rest is for rounding in
+  /// single precision, of 2⁻²⁴ of 2¹⁵ steps a few times.
+  struct Limits {
+    Limits(double size, double room)
+        : coarse(static_cast<Size>(room / kCoarse + 1.75 + 1.0 + 1.0)),
+          far(static_cast<float>(room + 2.0)),
+          close(static_cast<float>(size - 2.0 - 1.0)) {}
+    Size coarse;  ///< coarse steps to a surface: from there on it is not within the room
+    float far;    ///< steps to a surface: beyond it is not
+    float close;  ///< steps to a surface: within, the balls overlap
+  };
+
+  /// Which slots may hold a ball with its surface within the limits.
+  static Codes::mask_type sieve(const Cell& cell, const Code& centre, const Limits& limits) {
+    const auto square = [&](std::size_t axis) {
+      const Sizes steps = stdx::static_simd_cast<Sizes>(cell.at[axis] - centre[axis]);
+      const auto coarse = stdx::static_simd_cast<Codes>(steps >> kCoarseBits);
+      return Codes(coarse * coarse);
+    };
+    const Sizes reach = (cell.size >> kCoarseBits) + limits.coarse;
+    const auto far = stdx::static_simd_cast<Codes>(stdx::max(reach, Sizes(0)));
+    return square(0) + square(1) + square(2) < far * far;
+  }
+
+  static float squared_steps(const Cell& cell, std::size_t slot, const Code& centre) {
+    float sum = 0.0F;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto steps = static_cast<float>(static_cast<Size>(cell.at[axis][slot] - centre[axis]));
+      sum += steps * steps;
+    }
+    return sum;
+  }
+
+  static std::size_t free_slot(const Cell& cell) {
+    const auto free = cell.size < Size{0};
+    return stdx::any_of(free) ? static_cast<std::size_t>(stdx::find_first_set(free)) : kCrowd;
+  }
+
+  bool box_has(const Vec3& at) const {
+    return (at.array() >= box_.min.array()).all() && (at.array() <= box_.max.array()).all();
+  }
+
+  Code code(const Vec3& at) const {
+    const Vec3 steps = (at - box_.min) * per_m_;
+    Code code{};
+    for (int axis = 0; axis < 3; ++axis) {
+      code[static_cast<std::size_t>(axis)] =
+          static_cast<std::uint16_t>(static_cast<std::int64_t>(steps[axis]));
+    }
+    return code;
+  }
+
+  void fetch(const Grid::Block& block, bool with_names) const {
+    grid_.for_each(block, [&](std::size_t index, const Grid::Place& /*place*/) {
       __builtin_prefetch(&cells_[index]);
+      if (with_names) __builtin_prefetch(&names_[index]);
       // Without it GCC takes this for a function without effect, and leaves out the calls.
       std::atomic_signal_fence(std::memory_order_seq_cst);
       return true;
     });
   }
 
- private:
-  static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
-  /// From the box's corner, by its longest side: in a unit of the scene's own nothing is too large or too
-  /// small for single precision.
-  using Rough = Eigen::Vector3f;
-  using Box3f = Eigen::AlignedBox3f;
-
-  /// A ball, or none, which is near nothing.
-  struct Slot {
-    Rough at = Rough::Constant(std::numeric_limits<float>::quiet_NaN());
-    float size = 0.0F;
-    std::uint32_t ball = kNone;
-  };
-  struct alignas(64) Cell {
-    std::array<Slot, 3> slots;
-    std::uint32_t more = kNone;  ///< the first ball without a slot
-  };
-  static_assert(sizeof(Cell) == 64);
-
-  /// Of cells that are as many as the balls few hold more than three. Along a side that is much longer than
-  /// the others there are fewer, so that in a flat box they do not outnumber the balls by much.
-  static Grid as_many_as(std::size_t count, const Box& box, int dimension) {
+  /// With three balls to a cell, few have more than seven. Along a side that is much longer than the others
+  /// there are fewer cells, so that in a flat box they do not outnumber the balls by much.
+  static Grid a_few_in_each(std::size_t count, const Box& box, int dimension) {
+    constexpr double kFew = 3.0;
+    constexpr double kLongest = 8.0;
     double volume = 1.0;
     for (int axis = 0; axis < dimension; ++axis) volume *= box.max[axis] - box.min[axis];
-    constexpr double kLongest = 8.0;
-    const double along_cube = std::pow(static_cast<double>(count), 1.0 / dimension);
+    const double along_cube = std::pow(static_cast<double>(count) / kFew, 1.0 / dimension);
     return {box, dimension, std::pow(volume, 1.0 / dimension) / along_cube,
             std::max(1.0, kLongest * along_cube)};
   }
 
-  /// How far a rough distance may be off, with one of two rough sizes added: with u = 2⁻²⁴ each of two places
-  /// errs by √3 u of the longest side, their difference, its square and the root of that by 5 u of what comes
-  /// out, and sizes and their sum by 2 u of the reach. That is less than 11 u of both together, and 16 u are
-  /// taken.
-  double error_m(double reach) const { return 0x1p-20 * (1.0 / per_m_ + reach); }
-
-  Slot slot_of(std::uint32_t ball, const Column<Placed>& balls) const {
-    return {rough(balls[ball].position), rough(balls[ball].size), ball};
-  }
-  Rough rough(const Vec3& at) const { return ((at - corner_) * per_m_).cast<float>(); }
-  float rough(double length_m) const { return static_cast<float>(length_m * per_m_); }
-
-  Vec3 corner_;
-  double per_m_;  ///< 1/m, of the longest side of the box
+  Box box_;
   double largest_m_;
   Grid grid_;
+  double per_m_;  ///< steps
   Column<Cell> cells_;
+  Column<Names> names_;
+  Column<std::uint32_t> next_;  ///< in the chain of those without a slot
 };
 
 }  // namespace carom

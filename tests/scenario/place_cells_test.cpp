@@ -18,7 +18,7 @@ struct Crowd {
         double largest)
       : dimension(axes), box{corner, corner + sides}, cells(box, axes, count, largest) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      balls.push_back({somewhere(random), random.uniform(smallest, largest), 0});
+      balls.push_back({somewhere(random), random.uniform(smallest, largest)});
       cells.insert(i, balls);
     }
     for (std::uint32_t i = 0; i < count; i += 3) {
@@ -38,6 +38,8 @@ struct Crowd {
     return at;
   }
 
+  Vec3 inside(Random& random) const { return somewhere(random).cwiseMax(box.min).cwiseMin(box.max); }
+
   bool holds(std::uint32_t ball) const {
     const Vec3& at = balls[ball].position;
     return (at.array() >= box.min.array()).all() && (at.array() <= box.max.array()).all();
@@ -48,6 +50,8 @@ struct Crowd {
   Column<Placed> balls;
   Cells cells;
 };
+
+constexpr double kLargest = 0.3;
 
 /// Boxes near and far from zero, wide, flat and thin, with balls of one size and of sizes mixed 1:30, in
 /// metres and in a unit whose square single precision does not know.
@@ -60,7 +64,7 @@ std::vector<Crowd> crowds(Random& random, double unit_m) {
           const Vec3 from = dimension == 2 ? Vec3(corner.x(), corner.y(), 0.0) : corner;
           const Vec3 along = dimension == 2 ? Vec3(sides.x(), sides.y(), 0.0) : sides;
           all.emplace_back(random, dimension, unit_m * from, unit_m * along, 300, unit_m * smallest,
-                           unit_m * 0.3);
+                           unit_m * kLargest);
         }
       }
     }
@@ -75,21 +79,25 @@ TEST_P(CellsOf, NearVisitsAllThatALookAtEveryBallFinds_OrEndsAtOneThatOverlaps) 
   Random random(31);
   int through = 0;
   int ended = 0;
-  for (const Crowd& crowd : crowds(random, GetParam())) {
+  for (Crowd& crowd : crowds(random, GetParam())) {
     const auto count = static_cast<std::uint32_t>(crowd.balls.size());
     for (std::uint32_t ball = 0; ball < count; ball += 2) {
-      const Vec3 at = crowd.somewhere(random);
-      const double room = GetParam() * random.uniform(0.0, 1.0);
+      const double size = crowd.balls[ball].size;
+      const double room = GetParam() * random.uniform(0.0, kLargest);
+      const Cells::Spot spot = crowd.cells.spot(crowd.inside(random), room);
+      crowd.cells.remove(ball, crowd.balls);
       std::set<std::uint32_t> visited;
-      const bool all = crowd.cells.near(at, ball, room, crowd.balls, [&](std::uint32_t other) {
+      const bool all = crowd.cells.near(spot, size, room, [&](std::uint32_t other) {
         visited.insert(other);
         return true;
       });
+      crowd.cells.insert(ball, crowd.balls);
+      EXPECT_EQ(visited.count(ball), 0U);
       bool overlaps = false;
       for (std::uint32_t other = 0; other < count; ++other) {
         if (other == ball) continue;
-        const double far = (crowd.balls[other].position - at).norm();
-        overlaps = overlaps || far < crowd.balls[ball].size + crowd.balls[other].size;
+        const double far = (crowd.balls[other].position - spot.at).norm();
+        overlaps = overlaps || far < size + crowd.balls[other].size;
         const bool within = far - crowd.balls[other].size <= room;
         EXPECT_TRUE(!all || !within || visited.count(other) == 1) << other;
       }
@@ -106,8 +114,9 @@ TEST_P(CellsOf, AroundVisitsWhoALookAtEveryBallInTheBoxFinds) {
   Random random(32);
   std::size_t found = 0;
   for (const Crowd& crowd : crowds(random, GetParam())) {
-    const Grid other(crowd.box, crowd.dimension, GetParam() * random.uniform(0.5, 3.0), 64.0);
     for (int trial = 0; trial < 20; ++trial) {
+      const double width = GetParam() * random.uniform(0.5, 3.0);
+      const Grid other(crowd.box, crowd.dimension, width, trial % 2 == 0 ? 64.0 : 5.0);
       const Vec3 at = crowd.somewhere(random);
       std::multiset<std::uint32_t> visited;
       crowd.cells.around(at, other, crowd.balls, [&](std::uint32_t ball) {
