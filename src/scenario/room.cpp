@@ -33,9 +33,11 @@ double room_between(const Wall& a, const Wall& b) {
 
 std::optional<std::string> lack_of_room(const Scenario& scene) {
   std::vector<Wall> surfaces = scene.walls;
+  double roomy = 0.0;  // m, a radius for which there is room wherever the ball is
   for (std::size_t i = 0; i < scene.balls.size(); ++i) {
     const Ball& ball = scene.balls[i];
     if (std::isinf(ball.mass)) continue;  // it passes through walls
+    if (ball.radius <= roomy) continue;
     if (!scene.slabs.empty()) surfaces = surfaces_around(scene, ball.position);
     const double diameter = 2.0 * ball.radius;
     for (std::size_t a = 0; a < surfaces.size(); ++a) {
@@ -46,6 +48,7 @@ std::optional<std::string> lack_of_room(const Scenario& scene) {
                            diameter, room);
       }
     }
+    if (scene.slabs.empty()) roomy = ball.radius;
   }
   return std::nullopt;
 }
