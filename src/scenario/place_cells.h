@@ -183,9 +183,9 @@ class Cells {
   /// The last slot is for all of the cell that have none: there are too many, or they are outside of the box.
   static constexpr std::size_t kCrowd = kSlots - 1;
 
-  /// From a place to any ball in the cells that a search there looks at it is along each axis at most as far
-  /// as a cell is long and two balls reach. That is kFarthest coarse steps of 2⁷ steps: the sum of three
-  /// squares, rounded down to 147 below zero, fits into 16 bits, and the number of steps with its sign too.
+  /// Along an axis a ball in a cell that a search looks at is at most as far away as a cell is long and two
+  /// balls reach. That is made kFarthest coarse steps of 2⁷ steps. Below zero they are rounded down to 147,
+  /// and the sum of three squares fits into 16 bits, as the steps themselves do with their sign.
   static constexpr double kFarthest = 146.0;
   static constexpr int kCoarseBits = 7;
   static constexpr double kCoarse = 1 << kCoarseBits;
@@ -213,9 +213,9 @@ class Cells {
   };
 
   /// Two places are each rounded down to a step, so their difference is off by less than one step along an
-  /// axis, and its length by less than √3; by 1.75 coarse steps where that is rounded down once more. A size
-  /// is rounded up by a step at most, and down by less than one to coarse steps. The rest is for rounding in
-  /// single precision, of 2⁻²⁴ of 2¹⁵ steps a few times.
+  /// axis, and its length by less than √3 steps; by 1.75 coarse steps where the difference is rounded down
+  /// once more. A size is rounded up by a step at most. To coarse steps it and the room are rounded down, by
+  /// less than one each. The rest is for single precision, which rounds 2¹⁵ steps by 2⁻²⁴ of it, a few times.
   struct Limits {
     Limits(double size, double room)
         : coarse(static_cast<Size>(room / kCoarse + 1.75 + 1.0 + 1.0)),
@@ -291,7 +291,7 @@ class Cells {
   Box box_;
   double largest_m_;
   Grid grid_;
-  double per_m_;  ///< steps
+  double per_m_;  ///< steps in a metre
   Column<Cell> cells_;
   Column<Names> names_;
   Column<std::uint32_t> next_;  ///< in the chain of those without a slot
