@@ -77,9 +77,16 @@ class Flights {
     // In the order of their numbers: what bears them is added up.
     std::sort(records_.begin(), records_.end(),
               [this](const Record& a, const Record& b) { return world_.before(a.ball, b.ball); });
-    for (const Record& record : records_) fly_to(record.ball, step_s_);
-    threads_.in_parallel(size(), [&](std::size_t begin, std::size_t end) { fly_to_end(begin, end); });
-    for (const Record& record : records_) forget(record.ball);
+    for (Record& record : records_) {
+      fly_to(record.ball, step_s_);
+      record.arrival = motion(record.ball);
+    }
+    threads_.in_parallel(size(), [&](std::size_t begin, std::size_t end) { fly_whole_step(begin, end); });
+    for (const Record& record : records_) {
+      world_.position.set(record.ball, record.arrival.x);
+      if constexpr (kAccelerates) world_.velocity.set(record.ball, record.arrival.v);
+      forget(record.ball);
+    }
     records_.clear();
   }
 
@@ -175,6 +182,7 @@ class Flights {
   struct Record {
     std::uint32_t ball;
     Reach<Dim> reach;
+    Motion<Dim> arrival;  ///< at the end of the step
   };
 
   static constexpr std::uint32_t kUntouched = std::numeric_limits<std::uint32_t>::max();
@@ -184,7 +192,7 @@ class Flights {
     if (touched_[ball] == kUntouched) {
       const Reach<Dim> from_here = reach(ball);
       touched_[ball] = static_cast<std::uint32_t>(records_.size());
-      records_.push_back({static_cast<std::uint32_t>(ball), from_here});
+      records_.push_back({static_cast<std::uint32_t>(ball), from_here, motion(ball)});
     }
     return records_[touched_[ball]];
   }
@@ -203,20 +211,20 @@ class Flights {
     if constexpr (kTurning) still(ball);
   }
 
-  /// What fly_to() does, for balls from one up to, but without, another; those that are there already stay.
-  void fly_to_end(std::size_t begin, std::size_t end) {
+  /// What fly_to() does, for balls from one up to, but without, another, and from the step's start to its
+  /// end. Whoever was touched flies as well: to ask each would take longer than to put few back.
+  void fly_whole_step(std::size_t begin, std::size_t end) {
     for (int axis = 0; axis < Dim; ++axis) {
       const std::span<double> x = world_.position.axis(axis);
       const std::span<double> v = world_.velocity.axis(axis);
       if constexpr (kAccelerates) {
         const std::span<const double> a = std::as_const(acceleration_).axis(axis);
         for (std::size_t i = begin; i < end; ++i) {
-          const double tau = step_s_ - clock_[i];
-          x[i] += tau * (v[i] + (0.5 * tau) * a[i]);
-          v[i] += tau * a[i];
+          x[i] += step_s_ * (v[i] + (0.5 * step_s_) * a[i]);
+          v[i] += step_s_ * a[i];
         }
       } else {
-        for (std::size_t i = begin; i < end; ++i) x[i] += (step_s_ - clock_[i]) * v[i];
+        for (std::size_t i = begin; i < end; ++i) x[i] += step_s_ * v[i];
       }
     }
   }
