@@ -28,7 +28,11 @@ template <int Dim>
 class EventCells {
  public:
   EventCells(const VectorColumn<Dim>& position, std::span<const double> radius)
-      : is_giant_(radius.size(), 0), cell_(radius.size()), next_(radius.size()), previous_(radius.size()) {
+      : is_giant_(radius.size(), 0),
+        cell_(radius.size()),
+        entry_(radius.size()),
+        next_(radius.size()),
+        previous_(radius.size()) {
     measure(position, radius);
     choose_giants(radius);
     if (giants_.size() == radius.size()) return;
@@ -55,28 +59,32 @@ class EventCells {
 
   /// Moves the ball to the next cell along the axis; direction is 1 or -1.
   void cross(std::uint32_t ball, int axis, int direction) {
+    const auto k = static_cast<std::size_t>(axis);
     unlink(ball);
-    cell_[ball][static_cast<std::size_t>(axis)] += direction;
+    cell_[ball][k] += direction;
+    entry_[ball] = (entry_[ball] & ~masks_[k]) | beside(entry_[ball], k, direction);
     link(ball);
   }
 
-  /// Writes down all in the cells around the ball's own, and giants; with them the ball itself. Returns the
-  /// part of the room that it took. @pre the room is for all balls and one more
-  std::span<std::uint32_t> find_near(std::uint32_t ball, std::span<std::uint32_t> room) const {
+  /// Visits all in the cells around the ball's own, and giants; with them the ball itself.
+  /// @param room  to write down whom to visit: for all balls and one more
+  template <class Visit>
+  void visit_near(std::uint32_t ball, std::span<std::uint32_t> room, const Visit& visit) const {
     if (!holds(ball)) {
-      std::iota(room.begin(), room.end(), 0U);
-      return room.first(is_giant_.size());
+      for (std::uint32_t other = 0; other < is_giant_.size(); ++other) visit(other);
+      return;
     }
-    std::copy(giants_.begin(), giants_.end(), room.begin());
-    return room.first(gather_block(ball, around_, room, giants_.size()));
+    for (const std::uint32_t giant : giants_) visit(giant);
+    visit_cells(entry_[ball], 0, around(entry_[ball], 0), room, visit);
   }
 
   /// The same with all in the cells that came near by a crossing.
-  std::span<std::uint32_t> find_ahead(std::uint32_t ball, int axis, int direction,
-                                      std::span<std::uint32_t> room) const {
-    std::array<Span, Dim> spans = around_;
-    spans[static_cast<std::size_t>(axis)] = {direction, direction};
-    return room.first(gather_block(ball, spans, room, 0));
+  template <class Visit>
+  void visit_ahead(std::uint32_t ball, int axis, int direction, std::span<std::uint32_t> room,
+                   const Visit& visit) const {
+    const auto k = static_cast<std::size_t>(axis);
+    const std::array ahead = {beside(entry_[ball], k, direction)};
+    visit_cells(entry_[ball], k, ahead, room, visit);
   }
 
   /// The balls in the order of the table, in which those that are near in space are near: giants first.
@@ -93,6 +101,7 @@ class EventCells {
   void renumber(const std::vector<std::uint32_t>& order) {
     permute(is_giant_, order);
     permute(cell_, order);
+    permute(entry_, order);
     std::iota(giants_.begin(), giants_.end(), 0U);
     std::fill(heads_.begin(), heads_.end(), kNobody);
     for (auto ball = static_cast<std::uint32_t>(giants_.size()); ball < cell_.size(); ++ball) link(ball);
@@ -100,6 +109,7 @@ class EventCells {
 
  private:
   static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kHighestBit = std::numeric_limits<std::uint32_t>::digits - 1;
 
   /// Cells are wider than the largest diameter by this part of it: room for the rounding of positions.
   static constexpr double kMargin = 1.0 / 1024.0;
@@ -114,11 +124,8 @@ class EventCells {
 
   using Cell = std::array<std::int64_t, Dim>;
 
-  /// Cells to visit along an axis, counted from a ball's own.
-  struct Span {
-    std::int64_t first;
-    std::int64_t last;
-  };
+  /// Fewest entries along an axis, as a power of two: three cells in a row have entries of their own.
+  static constexpr int kFewestBits = 2;
 
   /// The width of cells for balls up to this radius: no narrower than what holds kBallsInCell.
   double width_for(double radius) const { return std::max(2.0 * radius * (1.0 + kMargin), spacing_); }
@@ -173,7 +180,7 @@ class EventCells {
     int all_bits = 0;
     for (std::size_t k = 0; k < Dim; ++k) {
       const double cells = std::min(std::ceil(extent_[static_cast<int>(k)] / width_), kMostCells);
-      bits[k] = bit_width(static_cast<std::size_t>(cells));
+      bits[k] = std::max(bit_width(static_cast<std::size_t>(cells)), kFewestBits);
       all_bits += bits[k];
     }
     for (const int most = Dim + bit_width(cell_.size()); all_bits > most; --all_bits) {
@@ -187,19 +194,11 @@ class EventCells {
   /// near in memory, along whichever axis. After G. M. Morton, "A computer oriented geodetic data base"
   /// (IBM, 1966).
   void interleave(std::array<int, Dim> bits, int all_bits) {
-    for (std::size_t k = 0; k < Dim; ++k) {
-      shares_[k].assign(std::size_t{1} << static_cast<std::size_t>(bits[k]), 0);
-      // An axis of one or two entries is all around with less than three of them.
-      around_[k] = {bits[k] == 0 ? 0 : -1, bits[k] < 2 ? 0 : 1};
-    }
     std::size_t axis = 0;
-    std::array<int, Dim> taken{};
     for (int bit = 0; bit < all_bits; ++bit) {
-      while (taken[axis] == bits[axis]) axis = (axis + 1) % Dim;
-      for (std::size_t number = 0; number < shares_[axis].size(); ++number) {
-        shares_[axis][number] |= static_cast<std::uint32_t>((number >> taken[axis]) & 1U) << bit;
-      }
-      ++taken[axis];
+      while (bits[axis] == 0) axis = (axis + 1) % Dim;
+      masks_[axis] |= std::uint32_t{1} << static_cast<std::uint32_t>(bit);
+      --bits[axis];
       axis = (axis + 1) % Dim;
     }
   }
@@ -207,26 +206,39 @@ class EventCells {
   void place(std::uint32_t ball, const Vec<Dim>& position) {
     for (int axis = 0; axis < Dim; ++axis) {
       const double number = std::min(std::floor((position[axis] - origin_[axis]) / width_), kMostCells);
-      cell_[ball][static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(number);
+      const auto k = static_cast<std::size_t>(axis);
+      cell_[ball][k] = static_cast<std::int64_t>(number);
+      entry_[ball] |= spread(cell_[ball][k], masks_[k]);
     }
     link(ball);
   }
 
   static int bit_width(std::size_t number) { return static_cast<int>(std::bit_width(number)); }
 
-  /// The bits of one axis in the number of a table entry: those of the cell's number, wrapped around.
-  std::uint32_t along(std::size_t axis, std::int64_t number) const {
-    return shares_[axis][static_cast<std::size_t>(number) & (shares_[axis].size() - 1)];
+  /// The lowest bits of a number, put where the mask has its bits: so that the number is wrapped around.
+  static std::uint32_t spread(std::int64_t number, std::uint32_t mask) {
+    std::uint32_t result = 0;
+    for (std::uint32_t left = mask; left != 0; left &= left - 1) {
+      if ((number & 1) != 0) result |= left & -left;
+      number >>= 1;
+    }
+    return result;
   }
 
-  std::uint32_t& head_of(std::uint32_t ball) {
-    std::uint32_t entry = 0;
-    for (std::size_t k = 0; k < Dim; ++k) entry |= along(k, cell_[ball][k]);
-    return heads_[entry];
+  /// The bits of one axis in the number of the next entry along it, up (direction 1) or down (-1), wrapped
+  /// around: a carry runs through the bits of other axes where they are all set, a borrow where none is.
+  std::uint32_t beside(std::uint32_t entry, std::size_t axis, int direction) const {
+    const std::uint32_t mask = masks_[axis];
+    return (direction > 0 ? (entry | ~mask) + 1 : (entry & mask) - 1) & mask;
+  }
+
+  /// Those of an entry and the two beside it.
+  std::array<std::uint32_t, 3> around(std::uint32_t entry, std::size_t axis) const {
+    return {beside(entry, axis, -1), entry & masks_[axis], beside(entry, axis, 1)};
   }
 
   void link(std::uint32_t ball) {
-    std::uint32_t& head = head_of(ball);
+    std::uint32_t& head = heads_[entry_[ball]];
     next_[ball] = head;
     previous_[ball] = kNobody;
     if (head != kNobody) previous_[head] = ball;
@@ -236,52 +248,53 @@ class EventCells {
   void unlink(std::uint32_t ball) {
     const std::uint32_t next = next_[ball];
     const std::uint32_t previous = previous_[ball];
-    (previous == kNobody ? head_of(ball) : next_[previous]) = next;
+    (previous == kNobody ? heads_[entry_[ball]] : next_[previous]) = next;
     if (next != kNobody) previous_[next] = previous;
   }
 
-  /// Writes down who is in a block of cells, from a place of the room on, and returns where they end. Whether
-  /// a cell is empty, and whether a ball is its last, is a toss of a coin, so that no branch is taken on it:
-  /// each is written, and kept if it is somebody. First come the heads, then whoever stands behind somebody.
-  std::size_t gather_block(std::uint32_t ball, const std::array<Span, Dim>& spans,
-                           std::span<std::uint32_t> room, std::size_t begin) const {
-    std::size_t end = begin;
-    const auto gather = [&](std::uint32_t other) {
+  /// Visits who is in the entries around one, of those along an axis in the given ones. Whether a cell is
+  /// empty, and whether a ball is its last, is a toss of a coin, so that no branch is taken on it: each is
+  /// written down, and kept if it is somebody: of all numbers kNobody alone has the highest bit. First come
+  /// the heads, then, while they are visited, whoever stands behind them.
+  template <std::size_t kAlong, class Visit>
+  void visit_cells(std::uint32_t entry, std::size_t axis, const std::array<std::uint32_t, kAlong>& along,
+                   std::span<std::uint32_t> room, const Visit& visit) const {
+    std::size_t end = 0;
+    const auto write = [&](std::uint32_t other) {
       room[end] = other;
-      end += other != kNobody ? 1 : 0;
+      end += ~other >> kHighestBit;
     };
-    const Cell& cell = cell_[ball];
-    const auto gather_row = [&](std::uint32_t row) {
-      for (std::int64_t x = cell[0] + spans[0].first; x <= cell[0] + spans[0].last; ++x) {
-        gather(heads_[row | along(0, x)]);
-      }
-    };
-    for (std::int64_t y = cell[1] + spans[1].first; y <= cell[1] + spans[1].last; ++y) {
-      if constexpr (Dim == 2) {
-        gather_row(along(1, y));
-      } else {
-        for (std::int64_t z = cell[2] + spans[2].first; z <= cell[2] + spans[2].last; ++z) {
-          gather_row(along(1, y) | along(2, z));
+    const auto second = around(entry, (axis + 1) % Dim);
+    const auto third = around(entry, (axis + 2) % Dim);
+    for (const std::uint32_t x : along) {
+      for (const std::uint32_t y : second) {
+        if constexpr (Dim == 2) {
+          write(heads_[x | y]);
+        } else {
+          for (const std::uint32_t z : third) write(heads_[x | y | z]);
         }
       }
     }
-    for (std::size_t k = begin; k < end; ++k) gather(next_[room[k]]);
-    return end;
+    for (std::size_t k = 0; k < end; ++k) {
+      const std::uint32_t other = room[k];
+      write(next_[other]);
+      visit(other);
+    }
   }
 
   std::vector<std::uint32_t> giants_;
   std::vector<std::uint8_t> is_giant_;
   std::vector<Cell> cell_;
-  std::vector<std::uint32_t> next_;                     ///< ball in the same entry of the table
-  std::vector<std::uint32_t> previous_;                 ///< the same, backwards
-  std::vector<std::uint32_t> heads_;                    ///< the table: a ball in each entry
-  std::array<std::vector<std::uint32_t>, Dim> shares_;  ///< of the cells along an axis in the entry's number
-  std::array<Span, Dim> around_{};                      ///< the cells around one
-  Vec<Dim> origin_;                                     ///< m, where cells are counted from
-  Vec<Dim> extent_;                                     ///< m, of the box that the balls stood in
-  double volume_ = 0.0;                                 ///< m^Dim, of that box
-  double spacing_ = 0.0;                                ///< m, the width of a cell that holds kBallsInCell
-  double width_ = kNoCells;                             ///< m, of a cell
+  std::vector<std::uint32_t> entry_;           ///< of the table, for each ball's cell
+  std::vector<std::uint32_t> next_;            ///< ball in the same entry of the table
+  std::vector<std::uint32_t> previous_;        ///< the same, backwards
+  std::vector<std::uint32_t> heads_;           ///< the table: a ball in each entry
+  std::array<std::uint32_t, Dim> masks_ = {};  ///< the bits of each axis in an entry's number
+  Vec<Dim> origin_;                            ///< m, where cells are counted from
+  Vec<Dim> extent_;                            ///< m, of the box that the balls stood in
+  double volume_ = 0.0;                        ///< m^Dim, of that box
+  double spacing_ = 0.0;                       ///< m, the width of a cell that holds kBallsInCell
+  double width_ = kNoCells;                    ///< m, of a cell
 };
 
 }  // namespace carom

@@ -64,13 +64,16 @@ class EventFlights {
 
   /// Where the ball is at a time of its flight.
   Motion<Dim> motion(std::uint32_t ball, double time_s) const {
-    const Body& body = bodies_[ball];
-    const double tau = time_s - body.clock;
-    if constexpr (kGravity) {
-      return Motion<Dim>{body.x, body.v, accelerations_[way_[ball]]}.after(tau);
-    } else {
-      return {body.x + tau * body.v, body.v, Vec<Dim>::Zero()};
-    }
+    return {place(ball, time_s), velocity(ball, time_s), acceleration(ball)};
+  }
+  Vec<Dim> place(std::uint32_t ball, double time_s) const {
+    const double tau = time_s - bodies_[ball].clock;
+    if constexpr (kGravity) return start(ball).after(tau).x;
+    return bodies_[ball].x + tau * bodies_[ball].v;
+  }
+  Vec<Dim> velocity(std::uint32_t ball, double time_s) const {
+    if constexpr (kGravity) return start(ball).after(time_s - bodies_[ball].clock).v;
+    return bodies_[ball].v;
   }
 
   /// The same by components, `tau` seconds after the flight began, and without a store to memory between

@@ -46,6 +46,7 @@ class EventPlans {
       const World<Dim> world(scene.balls);
       cells_.emplace(world.position, world.radius.each());
       near_.resize(scene.balls.size() + 1);
+      left_.resize(scene.balls.size() + 1);
     }
     for (std::uint32_t ball = 0; ball < balls(); ++ball) plan_flight(ball);
   }
@@ -76,7 +77,8 @@ class EventPlans {
   void plan_flight(std::uint32_t ball) {
     if (!flights_.movable(ball) && flights_.velocity(ball).isZero(0.0)) return;
     plan_crossing(ball, flights_.clock(ball));
-    look_again(ball);
+    see_all<true>(ball);
+    enqueue(ball);
   }
 
   /// Counts all times from a moment `shift_s` later. The flights have done so: what was seen is computed anew
@@ -130,7 +132,9 @@ class EventPlans {
     plan_crossing(ball, crossing.time);
     plans_[ball].crossing.is_by_wall = times_.is_by_wall(ball, cells_->lower_corner(ball), cells_->width_m());
     see_walls(ball);
-    see(ball, cells_->find_ahead(ball, crossing.axis, crossing.direction, near_));
+    see<false>(ball, [&](const auto& visit) {
+      cells_->visit_ahead(ball, crossing.axis, crossing.direction, near_, visit);
+    });
     enqueue(ball);
   }
 
@@ -141,14 +145,16 @@ class EventPlans {
   }
 
   void look_again(std::uint32_t ball) {
-    see_all(ball);
+    see_all<false>(ball);
     enqueue(ball);
   }
 
+  /// @tparam kBeganLast  see EventTimes::sieve()
+  template <bool kBeganLast>
   void see_all(std::uint32_t ball) {
     plans_[ball].impacts = {};
     see_walls(ball);
-    if (cells_) see(ball, cells_->find_near(ball, near_));
+    if (cells_) see<kBeganLast>(ball, [&](const auto& visit) { cells_->visit_near(ball, near_, visit); });
   }
 
   /// Computes anew what the ball has planned, after clocks have been rounded. Who did not touch it still does
@@ -158,7 +164,7 @@ class EventPlans {
     const auto planned = plans_[ball].impacts;
     if (kGravity ? planned.front().time < kNever
                  : plans_[ball].looks_again(ball) || times_.is_far_from_start(ball)) {
-      see_all(ball);
+      see_all<false>(ball);
       return;
     }
     plans_[ball].impacts = {};
@@ -183,16 +189,24 @@ class EventPlans {
   }
 
   /// First all are sieved without a branch, as half of them part and most of the others miss, at random.
-  void see(std::uint32_t ball, std::span<std::uint32_t> others) {
-    std::size_t left = 0;
+  template <bool kBeganLast, class VisitOthers>
+  void see(std::uint32_t ball, const VisitOthers& visit_others) {
+    const auto might_touch = times_.template sieve<kBeganLast>(ball);
+    std::uint32_t* const first = left_.data();
+    std::uint32_t* end = first;
+    visit_others([&](std::uint32_t other) {
+      *end = other;
+      end += might_touch(other) ? 1 : 0;
+    });
+    plan_impacts(ball, {first, end});
+  }
+
+  /// Those with the others that might be touched.
+  void plan_impacts(std::uint32_t ball, std::span<const std::uint32_t> others) {
     for (const std::uint32_t other : others) {
-      others[left] = other;
-      left += times_.might_touch(ball, other) ? 1 : 0;
-    }
-    for (const std::uint32_t other : others.first(left)) {
       if (!flights_.movable(ball) && !flights_.movable(other)) continue;
-      const EventImpact impact = seen(ball, other);
       // Who came through the sieve and does not touch is within its margin of touching.
+      const EventImpact impact = {times_.to_touch(ball, other), other, flight_[other]};
       const bool grazes = !kGravity && impact.time == kNever;
       plan_impact(ball, grazes ? EventImpact{kNever, ball} : impact);
     }
@@ -238,6 +252,7 @@ class EventPlans {
   std::vector<EventPlan> plans_;
   std::vector<std::uint32_t> flight_;  ///< counts the flights of each ball
   std::vector<std::uint32_t> near_;    ///< room for the balls that are looked at
+  std::vector<std::uint32_t> left_;    ///< room for what the sieve leaves of them
   EventQueue queue_;
 };
 

@@ -60,7 +60,9 @@ class EventTimes {
     const Motion<Dim> start = flights_.start(ball);
     const double closing = -wall.normal.dot(start.v);
     const double rounding_s = kEpsilon * (std::abs(clock) + std::abs(until_s));
-    return closing > 0.0 && gap(ball, start, wall) <= 2.0 * closing * (until_s - clock + rounding_s);
+    // Both are asked, as half of all balls head for the wall at random.
+    const bool in_time = gap(ball, start, wall) <= 2.0 * closing * (until_s - clock + rounding_s);
+    return static_cast<bool>(static_cast<int>(closing > 0.0) & static_cast<int>(in_time));
   }
 
   /// When the ball touches the wall.
@@ -73,35 +75,38 @@ class EventTimes {
                                  rounding, step_s_);
   }
 
-  /// False where the balls part, or pass by more than rounding: with d from i to j and w its rate of change,
-  /// d·w > m |w|, or by Lagrange's identity
-  ///   |d × w|² = d² w² - (d·w)² > w² (σ + m)².                                            (1)
+  /// Tells of other balls whether they might touch this one: false where they part, or pass by more than
+  /// rounding: with d from i to j and w its rate of change, where b = d·w > m |w|, or by Lagrange's identity
+  ///   |d × w|² = d² w² - b² > w² (σ + m)²,                                                (1)
+  /// both of which one comparison tells: d² w² + b |b| > w² (σ² + 3 m σ).
   /// The margin m = kMargin σ is for what rebase() may do to d, see is_far_from_start(); what both sides of
   /// (1) and to_touch() are computed with has its own, a few epsilons of d² w². Says nothing of those that
   /// are accelerated differently.
-  bool might_touch(std::uint32_t i, std::uint32_t j) const {
-    constexpr double kRounding = 64.0 * kEpsilon;
-    const double both = std::max(flights_.clock(i), flights_.clock(j));
-    const double tau_i = both - flights_.clock(i);
-    const double tau_j = both - flights_.clock(j);
-    double approach = 0.0;
-    double distance_2 = 0.0;
-    double speed_2 = 0.0;
-    for (int axis = 0; axis < Dim; ++axis) {
-      const double d = flights_.place_after(tau_j, j, axis) - flights_.place_after(tau_i, i, axis);
-      const double w = flights_.velocity_after(tau_j, j, axis) - flights_.velocity_after(tau_i, i, axis);
-      approach += d * w;
-      distance_2 += d * d;
-      speed_2 += w * w;
-    }
-    const double sigma = flights_.radius(i) + flights_.radius(j);
-    const double sigma_2 = sigma * sigma;
-    const double parting = kMargin * kMargin * sigma_2 * speed_2;
-    const double beyond = (1.0 - kRounding) * distance_2 - (1.0 + 3.0 * kMargin) * sigma_2;
-    bool might = static_cast<bool>(static_cast<int>(approach * std::abs(approach) < parting) &
-                                   static_cast<int>(beyond * speed_2 <= approach * approach));
-    if constexpr (kGravity) might = might || flights_.acceleration(i) != flights_.acceleration(j);
-    return might;
+  /// @tparam kBeganLast  the ball's flight began last of all: the others are looked at when it did
+  template <bool kBeganLast>
+  auto sieve(std::uint32_t i) const {
+    return [this, i, start = flights_.start(i), clock = flights_.clock(i),
+            radius = flights_.radius(i)](std::uint32_t j) {
+      constexpr double kRounding = 64.0 * kEpsilon;
+      const double both = kBeganLast ? clock : std::max(clock, flights_.clock(j));
+      const double tau_j = both - flights_.clock(j);
+      const auto d = [&](int axis) {
+        const double from = kBeganLast ? start.x[axis] : flights_.place_after(both - clock, i, axis);
+        return flights_.place_after(tau_j, j, axis) - from;
+      };
+      const auto w = [&](int axis) {
+        const double from = kBeganLast ? start.v[axis] : flights_.velocity_after(both - clock, i, axis);
+        return flights_.velocity_after(tau_j, j, axis) - from;
+      };
+      const double approach = dot(d, w);
+      const double distance_2 = dot(d, d);
+      const double speed_2 = dot(w, w);
+      const double sigma = radius + flights_.radius(j);
+      const double beyond = (1.0 - kRounding) * distance_2 - (1.0 + 3.0 * kMargin) * (sigma * sigma);
+      bool might = beyond * speed_2 + approach * std::abs(approach) < 0.0;
+      if constexpr (kGravity) might = might || start.a != flights_.acceleration(j);
+      return might;
+    };
   }
 
   /// Whether the ball is so far from where places or clocks count from that rounding a clock may move it by
@@ -119,41 +124,47 @@ class EventTimes {
   /// When the balls touch; the same whichever comes first.
   double to_touch(std::uint32_t i, std::uint32_t j) const {
     const double both = std::max(flights_.clock(i), flights_.clock(j));
-    const auto [a, b] = motions(i, j);
-    const Vec<Dim> d = b.x - a.x;
-    const Vec<Dim> w = b.v - a.v;
+    const Vec<Dim> v_i = flights_.velocity(i, both);
+    const Vec<Dim> v_j = flights_.velocity(j, both);
+    const Vec<Dim> d = flights_.place(j, both) - flights_.place(i, both);
+    const Vec<Dim> w = v_j - v_i;
     const double sigma = flights_.radius(i) + flights_.radius(j);
-    const double rounding = velocity_rounding(speed_bound(a.v) + speed_bound(b.v) + field_speed_);
+    const double rounding = velocity_rounding(speed_bound(v_i) + speed_bound(v_j) + field_speed_);
     if constexpr (kGravity) {
-      const Vec<Dim> relative = b.a - a.a;
-      if (!relative.isZero(0.0)) {
-        const double horizon = time_out_of_reach(d.norm() + sigma, w.norm(), relative.norm());
-        return both + time_to_touch<Dim>(d, w, relative, sigma, rounding, horizon);
+      const Vec<Dim> a = flights_.acceleration(j) - flights_.acceleration(i);
+      if (!a.isZero(0.0)) {
+        const double horizon = time_out_of_reach(d.norm() + sigma, w.norm(), a.norm());
+        return both + time_to_touch<Dim>(d, w, a, sigma, rounding, horizon);
       }
     }
     return both + time_to_touch<Dim>(d, w, sigma, rounding);
   }
 
-  /// When the ball leaves a cell, after `time_s`.
+  /// When the ball leaves a cell, after `time_s`. By which side is a toss of a coin, so that no branch is
+  /// taken on it.
   /// @param lower  the cell's lowest corner, m
   EventCrossing to_crossing(std::uint32_t ball, const Vec<Dim>& lower, double width_m, double time_s) const {
     EventCrossing first;
-    const auto see = [&](double time, int axis, int direction) {
-      if (time >= first.time) return;
-      first = {time, static_cast<std::int8_t>(axis), static_cast<std::int8_t>(direction)};
+    const auto see = [&](double time, int axis) {
+      first.axis = static_cast<std::int8_t>(time < first.time ? axis : first.axis);
+      first.time = std::min(first.time, time);
     };
-    for (int axis = 0; axis < Dim; ++axis) {
-      const double upper = lower[axis] + width_m;
-      if constexpr (kGravity) {
-        see(to_side(ball, axis, -1, lower[axis], time_s), axis, -1);
-        see(to_side(ball, axis, 1, upper, time_s), axis, 1);
-      } else {
-        // A straight flight passes the side that it heads for; the other it has passed before.
-        const Motion<Dim> start = flights_.start(ball);
-        const bool up = start.v[axis] > 0.0;
-        const double wait = ((up ? upper : lower[axis]) - start.x[axis]) / start.v[axis];
-        see(start.v[axis] == 0.0 ? kNever : flights_.clock(ball) + wait, axis, up ? 1 : -1);
+    if constexpr (kGravity) {
+      for (int axis = 0; axis < Dim; ++axis) {
+        const double down = to_side(ball, axis, -1, lower[axis], time_s);
+        const double up = to_side(ball, axis, 1, lower[axis] + width_m, time_s);
+        if (std::min(down, up) < first.time) first.direction = up < down ? 1 : -1;
+        see(std::min(down, up), axis);
       }
+    } else {
+      const Motion<Dim> start = flights_.start(ball);
+      for (int axis = 0; axis < Dim; ++axis) {
+        // A straight flight passes the side that it heads for; the other it has passed before.
+        const double side = lower[axis] + 0.5 * width_m + std::copysign(0.5 * width_m, start.v[axis]);
+        const double wait = (side - start.x[axis]) / start.v[axis];
+        see(start.v[axis] == 0.0 ? kNever : flights_.clock(ball) + wait, axis);
+      }
+      first.direction = static_cast<std::int8_t>(start.v[first.axis] > 0.0 ? 1 : -1);
     }
     return first;
   }
@@ -162,6 +173,14 @@ class EventTimes {
   /// Of σ: a pair that misses by more touches in no computation of its flights; only one in so many balls
   /// that do not touch comes through.
   static constexpr double kMargin = 0x1p-30;
+
+  /// Of vectors told by components.
+  template <class A, class B>
+  static double dot(const A& a, const B& b) {
+    double sum = a(0) * b(0);
+    for (int axis = 1; axis < Dim; ++axis) sum += a(axis) * b(axis);
+    return sum;
+  }
 
   double gap(std::uint32_t ball, const Motion<Dim>& motion, const EventWall<Dim>& wall) const {
     return wall.normal.dot(motion.x) - wall.offset - flights_.radius(ball);
@@ -178,12 +197,6 @@ class EventTimes {
 
   /// |v|, or up to √Dim more: for rounding, without a root.
   static double speed_bound(const Vec<Dim>& v) { return v.template lpNorm<1>(); }
-
-  /// Both balls when both are on their present flights.
-  std::pair<Motion<Dim>, Motion<Dim>> motions(std::uint32_t i, std::uint32_t j) const {
-    const double both = std::max(flights_.clock(i), flights_.clock(j));
-    return {flights_.motion(i, both), flights_.motion(j, both)};
-  }
 
   /// The time after which ½ a t² - w t exceeds the reach: bodies of relative acceleration a and velocity w
   /// are apart from then on.
