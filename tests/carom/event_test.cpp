@@ -674,21 +674,21 @@ TEST(EventEvolver, Refuses_WithAReason) {
 
 // --- the queue
 
-TEST(EventQueue, FirstIsTheLowestKey_AsInASet_WhateverTheTimes) {
+TEST(EventQueue, FirstIsTheEarliest_AsInASet_WhateverTheTimes) {
   // Waits of one scale, of many scales, many equal ones and infinite ones.
   for (const int kind : {0, 1, 2, 3}) {
     SCOPED_TRACE(testing::Message() << "seed 1, kind " << kind);
     Random random(1);
     constexpr std::uint32_t kBalls = 300;
-    EventQueue queue(kBalls);
+    EventQueue queue(kBalls, [](std::uint32_t ball) { return kBalls - ball; });
     std::set<std::tuple<double, std::uint64_t, std::uint32_t>> twin;
     std::vector<double> times(kBalls, std::numeric_limits<double>::infinity());
-    for (std::uint32_t i = 0; i < kBalls; ++i) twin.emplace(times[i], 0, i);
+    for (std::uint32_t i = 0; i < kBalls; ++i) twin.emplace(times[i], kBalls - i, i);
     const auto put = [&](std::uint32_t i, double time) {
-      twin.erase({times[i], queue.key(i).rank, i});
+      twin.erase({times[i], kBalls - i, i});
       times[i] = time;
-      queue.set(i, {time, i});
-      twin.emplace(time, i, i);
+      queue.set(i, time);
+      twin.emplace(time, kBalls - i, i);
     };
     const auto wait = [&] {
       if (kind == 1) return std::pow(10.0, random.uniform(-12.0, 3.0));

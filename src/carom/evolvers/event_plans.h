@@ -41,7 +41,7 @@ class EventPlans {
         times_(times),
         plans_(scene.balls.size()),
         flight_(scene.balls.size()),
-        queue_(scene.balls.size()) {
+        queue_(new_queue()) {
     if (scene.effects.collisions) {
       const World<Dim> world(scene.balls);
       cells_.emplace(world.position, world.radius.each());
@@ -55,7 +55,7 @@ class EventPlans {
   std::optional<EventMeeting> next(double limit_s) {
     while (true) {
       const std::uint32_t ball = queue_.first();
-      if (ball == EventQueue::kNobody || queue_.key(ball).time > limit_s) return std::nullopt;
+      if (ball == EventQueue::kNobody || queue_.time(ball) > limit_s) return std::nullopt;
       EventPlan& plan = plans_[ball];
       const EventImpact& first = plan.first();
       if (plan.crossing.time < first.time) {
@@ -232,18 +232,25 @@ class EventPlans {
   }
 
   void enqueue(std::uint32_t ball) {
-    const EventPlan& plan = plans_[ball];
-    const EventImpact& first = plan.first();
-    const bool crosses = plan.crossing.time < first.time;
-    // To cross and to look again changes nothing: at one time these come before all impacts.
-    const bool is_impact = !crosses && first.partner != ball;
-    queue_.set(ball, {crosses ? plan.crossing.time : first.time,
-                      is_impact ? event_rank(flights_.name(ball), name(first.partner)) : 0});
+    queue_.set(ball, std::min(plans_[ball].crossing.time, plans_[ball].first().time));
   }
 
   void enqueue_all() {
-    queue_ = EventQueue(balls());
+    queue_ = new_queue();
     for (std::uint32_t ball = 0; ball < balls(); ++ball) enqueue(ball);
+  }
+
+  EventQueue new_queue() const {
+    return {plans_.size(), [this](std::uint32_t ball) { return rank(ball); }};
+  }
+
+  /// Of the ball's next event. To cross and to look again changes nothing: at one time these come before all
+  /// impacts.
+  std::uint64_t rank(std::uint32_t ball) const {
+    const EventPlan& plan = plans_[ball];
+    const EventImpact& first = plan.first();
+    const bool is_impact = first.time <= plan.crossing.time && first.partner != ball;
+    return is_impact ? event_rank(flights_.name(ball), name(first.partner)) : 0;
   }
 
   const Flights& flights_;

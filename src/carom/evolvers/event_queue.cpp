@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace carom {
 
@@ -10,6 +11,9 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kInHeap = std::numeric_limits<std::uint32_t>::max();
+
+/// At the least: with fewer a bucket holds several balls, which have to be sorted.
+constexpr std::size_t kBucketsEach = 4;
 
 /// Of the calendar's length to the median wait: half of the balls have their event in its first quarter, and
 /// refilling it costs each ball one visit in about four events.
@@ -20,19 +24,20 @@ constexpr std::size_t kSample = 1024;
 
 }  // namespace
 
-EventQueue::EventQueue(std::size_t balls)
-    : keys_(balls),
+EventQueue::EventQueue(std::size_t balls, Rank rank)
+    : times_(balls, kInfinite),
+      rank_(std::move(rank)),
       links_(balls),
-      buckets_(static_cast<std::uint32_t>(std::bit_ceil(std::max<std::size_t>(balls, 2)))),
+      buckets_(static_cast<std::uint32_t>(std::bit_ceil(std::max<std::size_t>(kBucketsEach * balls, 2)))),
       current_(buckets_ - 1) {
   heads_.assign(std::size_t{buckets_} + 1, kNobody);
   end_ = -kInfinite;
   for (std::uint32_t ball = 0; ball < balls; ++ball) insert(ball);
 }
 
-void EventQueue::set(std::uint32_t ball, const Key& key) {
+void EventQueue::set(std::uint32_t ball, double time_s) {
   remove(ball);
-  keys_[ball] = key;
+  times_[ball] = time_s;
   insert(ball);
 }
 
@@ -57,7 +62,7 @@ std::uint32_t EventQueue::bucket_of(double time_s) const {
 }
 
 void EventQueue::insert(std::uint32_t ball) {
-  const std::uint32_t bucket = bucket_of(keys_[ball].time);
+  const std::uint32_t bucket = bucket_of(times_[ball]);
   if (bucket <= current_) {
     links_[ball].bucket = kInHeap;
     heap_.push_back(ball);
@@ -92,8 +97,8 @@ bool EventQueue::reopen() {
   std::fill(heads_.begin(), heads_.end(), kNobody);
   // Until its bucket is pulled, no ball is in the heap: the first bucket counts as one to come.
   current_ = kInHeap;
-  for (std::uint32_t ball = 0; ball < keys_.size(); ++ball) {
-    const std::uint32_t bucket = bucket_of(keys_[ball].time);
+  for (std::uint32_t ball = 0; ball < times_.size(); ++ball) {
+    const std::uint32_t bucket = bucket_of(times_[ball]);
     links_[ball] = {heads_[bucket], kNobody, bucket};
     if (heads_[bucket] != kNobody) links_[heads_[bucket]].previous = ball;
     heads_[bucket] = ball;
@@ -104,13 +109,13 @@ bool EventQueue::reopen() {
 
 bool EventQueue::choose_width() {
   begin_ = kInfinite;
-  for (const Key& key : keys_) begin_ = std::min(begin_, key.time);
+  for (const double time : times_) begin_ = std::min(begin_, time);
   end_ = -kInfinite;
   if (begin_ == kInfinite) return false;
   std::vector<double> waits;
-  const std::size_t stride = 1 + keys_.size() / kSample;
-  for (std::size_t ball = 0; ball < keys_.size(); ball += stride) {
-    if (keys_[ball].time < kInfinite) waits.push_back(keys_[ball].time - begin_);
+  const std::size_t stride = 1 + times_.size() / kSample;
+  for (std::size_t ball = 0; ball < times_.size(); ball += stride) {
+    if (times_[ball] < kInfinite) waits.push_back(times_[ball] - begin_);
   }
   double median = 0.0;
   if (!waits.empty()) {

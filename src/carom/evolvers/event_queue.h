@@ -2,40 +2,37 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
-#include <tuple>
 #include <vector>
 
 namespace carom {
 
 /// The next event of every ball, ordered: one entry a ball, whatever the number of events that it might have.
 ///
-/// A calendar: the near future is cut into as many buckets as there are balls, of equal width, and only the
-/// bucket at hand is sorted (a binary heap). An entry costs O(1) where the calendar's width suits the density
-/// of events, and O(log n) where everything falls into one bucket. The width changes only how fast this is:
-/// entries leave in the order of their keys.
+/// A calendar: the near future is cut into buckets of equal width, a few for each ball, and only the bucket
+/// at hand is sorted (a binary heap). An entry costs O(1) where the calendar's width suits the density of
+/// events, and O(log n) where everything falls into one bucket. The width changes only how fast this is:
+/// entries leave in the order of their times, and at one time of their ranks.
 /// Source: G. Paul, "A complexity O(1) priority queue for event driven molecular dynamics simulations",
 /// J. Comput. Phys. 221, 615 (2007). Deviation: the width is measured anew whenever the calendar is used up.
 class EventQueue {
  public:
   static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
-  /// Orders events: by time, and at one time by a rank that does not depend on memory.
-  struct Key {
-    double time = std::numeric_limits<double>::infinity();  ///< s
-    std::uint64_t rank = 0;
+  /// Orders balls whose events are at one time, by something that does not depend on memory. Asked for only
+  /// then, which is hardly ever, and of what the ball's event is at that moment.
+  using Rank = std::function<std::uint64_t(std::uint32_t ball)>;
 
-    bool operator<(const Key& other) const { return std::tie(time, rank) < std::tie(other.time, other.rank); }
-  };
+  EventQueue(std::size_t balls, Rank rank);
 
-  explicit EventQueue(std::size_t balls);
+  /// Infinite where there is no event.
+  void set(std::uint32_t ball, double time_s);
 
-  void set(std::uint32_t ball, const Key& key);
-
-  /// The ball whose key is the lowest; kNobody where all times are infinite.
+  /// The ball whose event is the first; kNobody where all times are infinite.
   std::uint32_t first();
 
-  const Key& key(std::uint32_t ball) const { return keys_[ball]; }
+  double time(std::uint32_t ball) const { return times_[ball]; }
 
  private:
   /// A ball stands in a bucket's list, or in the heap: then `previous` is its place there.
@@ -54,12 +51,17 @@ class EventQueue {
   bool choose_width();
   void pull_bucket();
 
-  bool before(std::uint32_t a, std::uint32_t b) const { return keys_[a] < keys_[b]; }
+  bool before(std::uint32_t a, std::uint32_t b) const {
+    if (times_[a] == times_[b]) [[unlikely]]
+      return rank_(a) < rank_(b);
+    return times_[a] < times_[b];
+  }
   void put(std::size_t place, std::uint32_t ball);
   void rise(std::size_t place);
   void sink(std::size_t place);
 
-  std::vector<Key> keys_;
+  std::vector<double> times_;  ///< s
+  Rank rank_;
   std::vector<Link> links_;
   std::vector<std::uint32_t> heads_;  ///< of the buckets; the last one holds what is beyond the calendar
   std::vector<std::uint32_t> heap_;   ///< all balls of the current bucket, and before
