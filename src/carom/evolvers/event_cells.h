@@ -226,10 +226,11 @@ class EventCells {
   }
 
   /// The bits of one axis in the number of the next entry along it, up (direction 1) or down (-1), wrapped
-  /// around: a carry runs through the bits of other axes where they are all set, a borrow where none is.
+  /// around. Less one, a borrow runs through the bits of other axes, where none is set; and less the mask,
+  /// which is more by ~mask + 1, a carry, where all are.
   std::uint32_t beside(std::uint32_t entry, std::size_t axis, int direction) const {
     const std::uint32_t mask = masks_[axis];
-    return (direction > 0 ? (entry | ~mask) + 1 : (entry & mask) - 1) & mask;
+    return ((entry & mask) - (direction > 0 ? mask : 1U)) & mask;
   }
 
   /// Those of an entry and the two beside it.

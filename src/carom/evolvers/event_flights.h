@@ -76,21 +76,6 @@ class EventFlights {
     return bodies_[ball].v;
   }
 
-  /// The same by components, `tau` seconds after the flight began, and without a store to memory between
-  /// them: for the sieve of EventTimes.
-  double place_after(double tau, std::uint32_t ball, int axis) const {
-    const Body& body = bodies_[ball];
-    if constexpr (kGravity) {
-      return body.x[axis] + tau * (body.v[axis] + (0.5 * tau) * accelerations_[way_[ball]][axis]);
-    } else {
-      return body.x[axis] + tau * body.v[axis];
-    }
-  }
-  double velocity_after(double tau, std::uint32_t ball, int axis) const {
-    if constexpr (kGravity) return bodies_[ball].v[axis] + tau * accelerations_[way_[ball]][axis];
-    return bodies_[ball].v[axis];
-  }
-
   /// Begins a new flight where the old one has led. What bore the ball bears it no longer.
   void begin_flight(std::uint32_t ball, double time_s) {
     const Motion<Dim> now = motion(ball, time_s);

@@ -27,10 +27,11 @@ constexpr std::size_t kSample = 1024;
 EventQueue::EventQueue(std::size_t balls, Rank rank)
     : times_(balls, kInfinite),
       rank_(std::move(rank)),
-      links_(balls),
+      nobody_(static_cast<std::uint32_t>(balls)),
+      links_(balls + 1),
       buckets_(static_cast<std::uint32_t>(std::bit_ceil(std::max<std::size_t>(kBucketsEach * balls, 2)))),
       current_(buckets_ - 1) {
-  heads_.assign(std::size_t{buckets_} + 1, kNobody);
+  heads_.assign(std::size_t{buckets_} + 1, nobody_);
   end_ = -kInfinite;
   for (std::uint32_t ball = 0; ball < balls; ++ball) insert(ball);
 }
@@ -71,8 +72,8 @@ void EventQueue::insert(std::uint32_t ball) {
     return;
   }
   const std::uint32_t head = heads_[bucket];
-  links_[ball] = {head, kNobody, bucket};
-  if (head != kNobody) links_[head].previous = ball;
+  links_[ball] = {head, nobody_, bucket};
+  links_[head].previous = ball;
   heads_[bucket] = ball;
 }
 
@@ -87,20 +88,20 @@ void EventQueue::remove(std::uint32_t ball) {
     sink(links_[last].previous);
     return;
   }
-  (link.previous == kNobody ? heads_[link.bucket] : links_[link.previous].next) = link.next;
-  if (link.next != kNobody) links_[link.next].previous = link.previous;
+  (link.previous == nobody_ ? heads_[link.bucket] : links_[link.previous].next) = link.next;
+  links_[link.next].previous = link.previous;
 }
 
 bool EventQueue::reopen() {
   const bool any = choose_width();
   heap_.clear();
-  std::fill(heads_.begin(), heads_.end(), kNobody);
+  std::fill(heads_.begin(), heads_.end(), nobody_);
   // Until its bucket is pulled, no ball is in the heap: the first bucket counts as one to come.
   current_ = kInHeap;
   for (std::uint32_t ball = 0; ball < times_.size(); ++ball) {
     const std::uint32_t bucket = bucket_of(times_[ball]);
-    links_[ball] = {heads_[bucket], kNobody, bucket};
-    if (heads_[bucket] != kNobody) links_[heads_[bucket]].previous = ball;
+    links_[ball] = {heads_[bucket], nobody_, bucket};
+    links_[heads_[bucket]].previous = ball;
     heads_[bucket] = ball;
   }
   current_ = any ? 0 : buckets_ - 1;
@@ -135,8 +136,8 @@ bool EventQueue::choose_width() {
 
 void EventQueue::pull_bucket() {
   std::uint32_t ball = heads_[current_];
-  heads_[current_] = kNobody;
-  while (ball != kNobody) {
+  heads_[current_] = nobody_;
+  while (ball != nobody_) {
     const std::uint32_t next = links_[ball].next;
     insert(ball);
     ball = next;

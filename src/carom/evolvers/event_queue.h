@@ -62,6 +62,8 @@ class EventQueue {
 
   std::vector<double> times_;  ///< s
   Rank rank_;
+  std::uint32_t
+      nobody_;  ///< where a list ends: a link that is written like all, so that none is asked for it
   std::vector<Link> links_;
   std::vector<std::uint32_t> heads_;  ///< of the buckets; the last one holds what is beyond the calendar
   std::vector<std::uint32_t> heap_;   ///< all balls of the current bucket, and before

@@ -89,18 +89,12 @@ class EventTimes {
             radius = flights_.radius(i)](std::uint32_t j) {
       constexpr double kRounding = 64.0 * kEpsilon;
       const double both = kBeganLast ? clock : std::max(clock, flights_.clock(j));
-      const double tau_j = both - flights_.clock(j);
-      const auto d = [&](int axis) {
-        const double from = kBeganLast ? start.x[axis] : flights_.place_after(both - clock, i, axis);
-        return flights_.place_after(tau_j, j, axis) - from;
-      };
-      const auto w = [&](int axis) {
-        const double from = kBeganLast ? start.v[axis] : flights_.velocity_after(both - clock, i, axis);
-        return flights_.velocity_after(tau_j, j, axis) - from;
-      };
-      const double approach = dot(d, w);
-      const double distance_2 = dot(d, d);
-      const double speed_2 = dot(w, w);
+      const Motion<Dim> from = kBeganLast ? start : flights_.motion(i, both);
+      const Vec<Dim> d = flights_.place(j, both) - from.x;
+      const Vec<Dim> w = flights_.velocity(j, both) - from.v;
+      const double approach = d.dot(w);
+      const double distance_2 = d.squaredNorm();
+      const double speed_2 = w.squaredNorm();
       const double sigma = radius + flights_.radius(j);
       const double beyond = (1.0 - kRounding) * distance_2 - (1.0 + 3.0 * kMargin) * (sigma * sigma);
       bool might = beyond * speed_2 + approach * std::abs(approach) < 0.0;
@@ -144,28 +138,33 @@ class EventTimes {
   /// taken on it.
   /// @param lower  the cell's lowest corner, m
   EventCrossing to_crossing(std::uint32_t ball, const Vec<Dim>& lower, double width_m, double time_s) const {
+    std::array<double, Dim> times;
+    std::array<bool, Dim> up;
+    const Motion<Dim> start = flights_.start(ball);
     EventCrossing first;
-    const auto see = [&](double time, int axis) {
-      first.axis = static_cast<std::int8_t>(time < first.time ? axis : first.axis);
-      first.time = std::min(first.time, time);
-    };
-    if constexpr (kGravity) {
-      for (int axis = 0; axis < Dim; ++axis) {
-        const double down = to_side(ball, axis, -1, lower[axis], time_s);
-        const double up = to_side(ball, axis, 1, lower[axis] + width_m, time_s);
-        if (std::min(down, up) < first.time) first.direction = up < down ? 1 : -1;
-        see(std::min(down, up), axis);
-      }
-    } else {
-      const Motion<Dim> start = flights_.start(ball);
-      for (int axis = 0; axis < Dim; ++axis) {
+    for (int axis = 0; axis < Dim; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      if constexpr (kGravity) {
+        const double to_lower = to_side(ball, axis, -1, lower[axis], time_s);
+        const double to_upper = to_side(ball, axis, 1, lower[axis] + width_m, time_s);
+        times[k] = std::min(to_lower, to_upper);
+        up[k] = to_upper < to_lower;
+      } else {
         // A straight flight passes the side that it heads for; the other it has passed before.
         const double side = lower[axis] + 0.5 * width_m + std::copysign(0.5 * width_m, start.v[axis]);
         const double wait = (side - start.x[axis]) / start.v[axis];
-        see(start.v[axis] == 0.0 ? kNever : flights_.clock(ball) + wait, axis);
+        times[k] = start.v[axis] == 0.0 ? kNever : flights_.clock(ball) + wait;
+        up[k] = start.v[axis] > 0.0;
       }
-      first.direction = static_cast<std::int8_t>(start.v[first.axis] > 0.0 ? 1 : -1);
+      first.time = std::min(first.time, times[k]);
     }
+    // The axis is the number of those before it that take longer.
+    int longer = 1;
+    for (std::size_t k = 0; k + 1 < Dim; ++k) {
+      longer &= static_cast<int>(times[k] > first.time);
+      first.axis = static_cast<std::int8_t>(first.axis + longer);
+    }
+    first.direction = static_cast<std::int8_t>(up[static_cast<std::size_t>(first.axis)] ? 1 : -1);
     return first;
   }
 
@@ -173,14 +172,6 @@ class EventTimes {
   /// Of σ: a pair that misses by more touches in no computation of its flights; only one in so many balls
   /// that do not touch comes through.
   static constexpr double kMargin = 0x1p-30;
-
-  /// Of vectors told by components.
-  template <class A, class B>
-  static double dot(const A& a, const B& b) {
-    double sum = a(0) * b(0);
-    for (int axis = 1; axis < Dim; ++axis) sum += a(axis) * b(axis);
-    return sum;
-  }
 
   double gap(std::uint32_t ball, const Motion<Dim>& motion, const EventWall<Dim>& wall) const {
     return wall.normal.dot(motion.x) - wall.offset - flights_.radius(ball);
