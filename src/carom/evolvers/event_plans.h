@@ -263,4 +263,10 @@ class EventPlans {
   EventQueue queue_;
 };
 
+// Each is compiled in a file of its own: in larger ones the compiler leaves calls where it matters.
+extern template class EventPlans<2, false>;
+extern template class EventPlans<2, true>;
+extern template class EventPlans<3, false>;
+extern template class EventPlans<3, true>;
+
 }  // namespace carom

@@ -1,0 +1,7 @@
+#include "carom/evolvers/event_plans.h"
+
+namespace carom {
+
+template class EventPlans<3, true>;
+
+}  // namespace carom
