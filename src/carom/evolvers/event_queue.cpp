@@ -12,8 +12,8 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kInHeap = std::numeric_limits<std::uint32_t>::max();
 
-/// At the least: with fewer a bucket holds several balls, which have to be sorted.
-constexpr std::size_t kBucketsEach = 4;
+/// At the least: with fewer a bucket holds several balls, which have to be sorted; more only take room.
+constexpr std::size_t kBucketsEach = 2;
 
 /// Of the calendar's length to the median wait: half of the balls have their event in its first quarter, and
 /// refilling it costs each ball one visit in about four events.
