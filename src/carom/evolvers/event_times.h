@@ -1,9 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "carom/evolvers/event_flights.h"
@@ -104,7 +104,7 @@ class EventTimes {
   }
 
   /// Whether the ball is so far from where places or clocks count from that rounding a clock may move it by
-  /// more than a part of the margin of might_touch(). A clock c, however often it counted anew, has been
+  /// more than a part of the margin of sieve(). A clock c, however often it counted anew, has been
   /// rounded by less than ε |c|, as has the other ball's; a time of flight, not longer than |c|, is rounded
   /// by half of ε |c| and a place by half of ε (|x| + 2 |v| |c|), once before and once after. In all a ball
   /// of radius r is moved by less than 5 ε (|x| + |v| |c|), and here by less than kMargin r / 3.
@@ -159,12 +159,14 @@ class EventTimes {
       first.time = std::min(first.time, times[k]);
     }
     // The axis is the number of those before it that take longer.
-    int longer = 1;
+    std::size_t axis = 0;
+    std::size_t longer = 1;
     for (std::size_t k = 0; k + 1 < Dim; ++k) {
-      longer &= static_cast<int>(times[k] > first.time);
-      first.axis = static_cast<std::int8_t>(first.axis + longer);
+      longer &= times[k] > first.time ? 1U : 0U;
+      axis += longer;
     }
-    first.direction = static_cast<std::int8_t>(up[static_cast<std::size_t>(first.axis)] ? 1 : -1);
+    first.axis = static_cast<std::int8_t>(axis);
+    first.direction = up[axis] ? 1 : -1;
     return first;
   }
 
