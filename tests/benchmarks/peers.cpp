@@ -113,52 +113,49 @@ std::vector<std::string> without_ode_among_many(std::vector<std::string> engines
 std::vector<Runner> runners(const std::vector<std::string>& engines, const Scenario& scene) {
   std::vector<Runner> all;
   all.reserve(engines.size());
-  for (const std::string& engine : engines) all.push_back({engine, &scene, Unit::ball_step});
+  for (const std::string& engine : engines) all.push_back({engine, &scene});
   return all;
 }
 
 constexpr const char* kPerCollision = "collision, or ball and step of Bullet's";
 
-// The event-driven evolver, by the collision, against a step of Bullet with the same balls.
-// @param in_a_thin_gas  a ball's step of Bullet's where balls have fewer neighbours, in the gas of gas(3)
-void race_from_collision_to_collision(std::size_t balls, const Samples& in_a_thin_gas, const Effort& effort,
-                                      Findings& findings) {
-  const Scenario scene = scene_of(hard_sphere_gas(), balls);
-  const std::vector<Cost> costs =
-      race({{"bullet-f64", &scene, Unit::ball_step}, {"carom:event", &scene, Unit::ball_impact}},
-           effort.rounds, effort.shortest_s);
-  const Samples& bullet = of(costs, "bullet-f64");
-  const Samples& event = of(costs, "carom:event");
-  findings.add(hard_sphere_gas().name, kPerCollision, costs);
-  if (balls <= effort.thousand) return;
-  const double limit = balls == 10 * effort.thousand ? 0.8 : 1.5;
-  const std::string goal = fmt::format(
-      "event, a collision at nσ³ = 0.5 by a ball's step in Bullet in double precision, {} balls", balls);
-  findings.goals.push_back({goal + ", the same ones", "", false, limit, ratio(event, bullet)});
+// How fast the event-driven evolver is by the collision, beside a step of Bullet's for one of the same balls,
+// and for one of a gas where balls have fewer neighbours.
+void note_collisions(const Cost& event, const Cost& bullet, const Cost& bullet_in_a_thin_gas, double limit,
+                     Findings& findings) {
+  const std::string goal =
+      fmt::format("event, a collision at nσ³ = 0.5 by a ball's step in Bullet in double precision, {} balls",
+                  event.balls);
+  findings.goals.push_back({goal + ", the same ones", "", false, limit, ratio(event.ns, bullet.ns)});
   findings.goals.push_back(
-      {goal + ", Bullet's at packing 0.1", "", false, limit, ratio(event, in_a_thin_gas)});
+      {goal + ", Bullet's at packing 0.1", "", false, limit, ratio(event.ns, bullet_in_a_thin_gas.ns)});
 }
 
-// In space, against Bullet in double precision.
+// In space, against Bullet in double precision; with them the event-driven evolver, by the collision.
 void race_in_space(const Effort& effort, Findings& findings) {
   for (const std::size_t balls : decades(effort, 100'000)) {
     say(fmt::format("{} balls in space", balls));
     const Scenario scene = scene_of(gas(3), balls);
-    const std::vector<Cost> costs = race(
-        runners(
-            without_ode_among_many({"bullet-f64", "bullet", "ode", "carom:step", "carom:toi"}, balls, effort),
-            scene),
-        effort.rounds, effort.shortest_s);
-    findings.add(gas(3).name, "ball and step", costs);
-    const Samples& bullet = of(costs, "bullet-f64");
-    race_from_collision_to_collision(balls, bullet, effort, findings);
-    if (balls > effort.thousand) {
-      const std::string where = fmt::format("{} balls in space", balls);
-      findings.goals.push_back({"step, times faster than Bullet in double precision, " + where, "", true,
-                                100.0, ratio(bullet, of(costs, "carom:step"))});
-      findings.goals.push_back({"toi, times faster than Bullet in double precision, " + where, "", true, 40.0,
-                                ratio(bullet, of(costs, "carom:toi"))});
-    }
+    const Scenario hard_spheres = scene_of(hard_sphere_gas(), balls);
+    std::vector<Runner> field = runners(
+        without_ode_among_many({"bullet-f64", "bullet", "ode", "carom:step", "carom:toi"}, balls, effort),
+        scene);
+    field.push_back({"bullet-f64", &hard_spheres, Unit::ball_step});
+    field.push_back({"carom:event", &hard_spheres, Unit::ball_impact});
+    const std::vector<Cost> costs = race(field, effort.rounds, effort.shortest_s);
+    const std::vector<Cost> in_the_gas(costs.begin(), costs.end() - 2);
+    const std::vector<Cost> of_hard_spheres(costs.end() - 2, costs.end());
+    findings.add(gas(3).name, "ball and step", in_the_gas);
+    findings.add(hard_sphere_gas().name, kPerCollision, of_hard_spheres);
+    if (balls <= effort.thousand) continue;
+    const Cost& bullet = in_the_gas.front();
+    const std::string where = fmt::format("{} balls in space", balls);
+    findings.goals.push_back({"step, times faster than Bullet in double precision, " + where, "", true, 100.0,
+                              ratio(bullet.ns, of(costs, "carom:step"))});
+    findings.goals.push_back({"toi, times faster than Bullet in double precision, " + where, "", true, 40.0,
+                              ratio(bullet.ns, of(costs, "carom:toi"))});
+    note_collisions(of_hard_spheres.back(), of_hard_spheres.front(), bullet,
+                    balls == 10 * effort.thousand ? 0.8 : 1.5, findings);
   }
 }
 
@@ -221,14 +218,13 @@ void race_in_numbers(const Effort& effort, Findings& findings) {
       scenes.push_back(scene_of(layout, balls));
     for (const std::string evolver : {"step", "toi"}) {
       say(fmt::format("the growth of {}, {}", evolver, layout.name));
-      std::vector<Cost> costs;
+      std::vector<Runner> field;
       for (const Scenario& scene : scenes) {
         // Long enough for many of a pair list's lives, each of which begins with all the work of its making.
-        const double shortest_s = effort.shortest_s * (scene.balls.size() >= effort.most_balls ? 15.0 : 3.0);
-        costs.push_back(
-            race(runners({"carom:" + evolver}, scene), std::min(effort.rounds, kFewRounds), shortest_s)
-                .front());
+        const double longer = scene.balls.size() >= effort.most_balls ? 15.0 : 3.0;
+        field.push_back({"carom:" + evolver, &scene, Unit::ball_step, longer});
       }
+      const std::vector<Cost> costs = race(field, std::min(effort.rounds, kFewRounds), effort.shortest_s);
       findings.add("growth: " + layout.name, "ball and step", costs);
       findings.goals.push_back(
           {fmt::format("{}, x where a step costs (number of balls)^x, {}", evolver, layout.name), "", false,

@@ -41,8 +41,8 @@ std::int64_t ball_impacts(const Simulation& simulation) {
   return tally.impacts - tally.wall_impacts;
 }
 
-/// Takes what Google Benchmark measured, by the name of the benchmark. One that it repeats to find out how
-/// long to measure is told once, at the end.
+/// Takes what Google Benchmark measured, by the name of the benchmark, which is the number of its runner. One
+/// that it repeats to find out how long to measure is told once, at the end.
 class Taker final : public ::benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context& /*context*/) override { return true; }
@@ -74,18 +74,20 @@ std::vector<Cost> race(const std::vector<Runner>& runners, int rounds, double sh
   std::vector<std::unique_ptr<Simulation>> simulations;
   ::benchmark::ClearRegisteredBenchmarks();
   for (const Runner& runner : runners) {
+    const std::string number = fmt::format("{}", simulations.size());
     simulations.push_back(set_up(runner));
     Simulation& simulation = *simulations.back();
     simulation.advance(kStep_s, kStepsBefore);
-    ::benchmark::RegisterBenchmark(runner.engine.c_str(), [&runner, &simulation](::benchmark::State& state) {
+    ::benchmark::RegisterBenchmark(number.c_str(), [&runner, &simulation](::benchmark::State& state) {
       advance(state, runner, simulation);
-    })->MinTime(shortest_s);
+    })->MinTime(shortest_s * runner.longer);
   }
   for (int round = 0; round < rounds; ++round) ::benchmark::RunSpecifiedBenchmarks(&taker, "all");
   std::vector<Cost> costs;
   costs.reserve(runners.size());
   for (const Runner& runner : runners) {
-    costs.push_back({runner.engine, runner.scene->balls.size(), taker.costs.at(runner.engine)});
+    const std::string number = fmt::format("{}", costs.size());
+    costs.push_back({runner.engine, runner.scene->balls.size(), taker.costs.at(number)});
   }
   return costs;
 }

@@ -20,6 +20,7 @@ struct Runner {
   std::string engine;  ///< as on the command line: "carom:step", "bullet-f64"
   const Scenario* scene = nullptr;
   Unit unit = Unit::ball_step;
+  double longer = 1.0;  ///< it is timed so many times as long as others at least
 };
 
 /// CPU time, ns, of one ball in one step of 1/240 s, or of one impact between two balls.
@@ -33,6 +34,7 @@ struct Cost {
 /// machine is doing meets all of them alike. Nothing is recorded: only Simulation::advance() is timed, by
 /// Google Benchmark.
 /// @param shortest_s  that a runner is timed for in a round
+/// @return costs in the order of the runners
 /// @throws MachineError where an engine is not built
 std::vector<Cost> race(const std::vector<Runner>& runners, int rounds, double shortest_s);
 
