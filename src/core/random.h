@@ -8,7 +8,7 @@ namespace carom {
 /// Random numbers whose bits are the same on every machine: the generator is fixed by the C++ standard
 /// (mt19937_64) and the distributions below use only comparisons and correctly rounded arithmetic, no libm
 /// (the standard library's distributions are free to differ between implementations). Boost's generator gives
-/// the same bits as GCC's in a third of the time, for it has no branch that none can foresee.
+/// the same bits as GCC's in a third of the time, for its branches do not depend on chance.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : generator_(seed) {}

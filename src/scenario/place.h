@@ -17,7 +17,8 @@ namespace carom {
 /// has placed 2000 equal balls, but 99 998 of 100 000 with radii 1 : 1.2, and at 0.471 (nσ³ = 0.9) it gives
 /// up.
 ///
-/// @pre scene.box is set. @throws DoesNotFit (generate.h) where balls are left that cannot grow.
+/// @pre scene.box is set, and its sides are among scene.walls. @throws DoesNotFit (generate.h) where balls
+/// are left that cannot grow.
 std::vector<Vec3> place_at_random(const std::vector<double>& radii, const Scenario& scene, Random& random);
 
 }  // namespace carom

@@ -46,6 +46,7 @@ class Cells {
   /// @param largest  m, the radius that none exceeds
   Cells(const Box& box, int dimension, std::size_t count, double largest)
       : box_(box),
+        axes_(static_cast<std::size_t>(dimension)),
         largest_m_(largest),
         grid_(a_few_in_each(count, box, dimension)),
         per_m_(kFarthest * kCoarse / (2.0 * largest + grid_.longest_side(dimension))),
@@ -104,7 +105,7 @@ class Cells {
       // the cells between the outermost there is nothing to ask.
       auto inside = cell.size >= Size{0};
       auto surely = inside;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t axis = 0; axis < axes_; ++axis) {
         if (place[axis] == block.low[axis]) {
           const Sizes beyond = stdx::static_simd_cast<Sizes>(cell.at[axis] - from[axis]);
           inside &= beyond >= Size{-1};
@@ -289,6 +290,7 @@ class Cells {
   }
 
   Box box_;
+  std::size_t axes_;  ///< that the cells are counted along
   double largest_m_;
   Grid grid_;
   double per_m_;  ///< steps in a metre

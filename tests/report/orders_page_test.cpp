@@ -25,8 +25,8 @@ std::string orders_chapter_of(const std::filesystem::path& file) {
 
 std::string orders_chapter_of_text(const std::string& text) {
   const test::TestFolder folder;
-  write_file(folder / "orders.json", text);
-  return orders_chapter_of(folder / "orders.json");
+  write_file(folder / "orders-of-a-test.json", text);
+  return orders_chapter_of(folder / "orders-of-a-test.json");
 }
 
 TEST(OrdersChapter, ShowsClaimMeasurementFitAndErrors_OfEachEvolver) {
@@ -57,8 +57,8 @@ TEST(OrdersChapter, NamesTheFile_ThatItCannotUse) {
         R"([{"scene": "a/b", "evolver": "toi", "refuses": "", "claimed": 1, "order": 1, "r_squared": 1,
              "errors": []}])"}) {
     EXPECT_THAT([&] { orders_chapter_of_text(bad); },
-                testing::ThrowsMessage<InputError>(
-                    AllOf(HasSubstr("orders.json"), HasSubstr("tests/benchmarks/run writes it anew"))))
+                testing::ThrowsMessage<InputError>(AllOf(HasSubstr("orders-of-a-test.json"),
+                                                         HasSubstr("tests/benchmarks/run writes it anew"))))
         << bad;
   }
 }

@@ -26,8 +26,8 @@ std::string speed_chapter_of(const std::filesystem::path& file) {
 
 std::string speed_chapter_of_text(const std::string& text) {
   const test::TestFolder folder;
-  write_file(folder / "speed.json", text);
-  return speed_chapter_of(folder / "speed.json");
+  write_file(folder / "speed-of-a-test.json", text);
+  return speed_chapter_of(folder / "speed-of-a-test.json");
 }
 
 constexpr const char* kSpeed = R"({
@@ -76,8 +76,8 @@ TEST(SpeedChapter, NamesTheFile_ThatItCannotUse) {
   for (const char* bad :
        {"{", "[]", "{}", R"({"machine": {"cpu": "a", "cores": 1, "compiler": "b", "build": "c"}})"}) {
     EXPECT_THAT([&] { speed_chapter_of_text(bad); },
-                testing::ThrowsMessage<InputError>(
-                    AllOf(HasSubstr("speed.json"), HasSubstr("tests/benchmarks/run writes it anew"))))
+                testing::ThrowsMessage<InputError>(AllOf(HasSubstr("speed-of-a-test.json"),
+                                                         HasSubstr("tests/benchmarks/run writes it anew"))))
         << bad;
   }
 }

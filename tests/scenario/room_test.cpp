@@ -67,6 +67,19 @@ TEST(Room, WallsThatAreNotParallel_AndImmovableBalls_AreNoContradiction) {
   EXPECT_FALSE(lack_of_room(pillar));
 }
 
+TEST(Room, IsAskedForEachBall_HoweverManyHaveIt) {
+  Scenario scene = gap_of(0.3, 0.1);
+  scene.balls.push_back(ball_of(0.2, Vec3(0.15, 1, 0)));
+  ASSERT_TRUE(lack_of_room(scene));
+  EXPECT_THAT(*lack_of_room(scene), HasSubstr("ball 1 has a diameter of 0.4 m"));
+  // As large as one that has room, but on the narrow side of a slab.
+  Scenario halves = gap_of(10.0, 0.3);
+  halves.slabs = {{Vec3::UnitX(), 0.55, 0.1}};
+  halves.balls.push_back(ball_of(0.3, Vec3(0.3, 1, 0)));
+  ASSERT_TRUE(lack_of_room(halves));
+  EXPECT_THAT(*lack_of_room(halves), HasSubstr("ball 1 has a diameter of 0.6 m"));
+}
+
 TEST(Room, SceneFileWithoutRoom_IsAnError) {
   const std::string text =
       "title = \"a\"\ndimension = 2\nduration = 1.0\nstep = 0.1\nframes = 1\n[box]\nmin = [0, 0]\n"

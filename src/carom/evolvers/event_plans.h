@@ -50,6 +50,9 @@ class EventPlans {
     }
     for (std::uint32_t ball = 0; ball < balls(); ++ball) plan_flight(ball);
   }
+  /// The queue asks these plans for ranks, here where they are.
+  EventPlans(const EventPlans&) = delete;
+  EventPlans& operator=(const EventPlans&) = delete;
 
   /// The next impact up to `limit_s`, if there is one.
   std::optional<EventMeeting> next(double limit_s) {
@@ -205,7 +208,8 @@ class EventPlans {
   void plan_impacts(std::uint32_t ball, std::span<const std::uint32_t> others) {
     for (const std::uint32_t other : others) {
       if (!flights_.movable(ball) && !flights_.movable(other)) continue;
-      // Who came through the sieve and does not touch is within its margin of touching.
+      // Who came through the sieve and does not touch is within its margin of touching. As seen(), of balls
+      // alone.
       const EventImpact impact = {times_.to_touch(ball, other), other, flight_[other]};
       const bool grazes = !kGravity && impact.time == kNever;
       plan_impact(ball, grazes ? EventImpact{kNever, ball} : impact);

@@ -20,8 +20,8 @@ class EventQueue {
  public:
   static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
-  /// Orders balls whose events are at one time, by something that does not depend on memory. Asked for only
-  /// then, which is hardly ever, and of what the ball's event is at that moment.
+  /// Orders balls whose events are at one time, by something that does not depend on memory. Asked only then,
+  /// which is seldom; it must speak of the event that the ball has at that moment.
   using Rank = std::function<std::uint64_t(std::uint32_t ball)>;
 
   EventQueue(std::size_t balls, Rank rank);
@@ -62,8 +62,8 @@ class EventQueue {
 
   std::vector<double> times_;  ///< s
   Rank rank_;
-  std::uint32_t
-      nobody_;  ///< where a list ends: a link that is written like all, so that none is asked for it
+  /// Where a list ends: a link that is written like all, so that none is asked for it.
+  std::uint32_t nobody_;
   std::vector<Link> links_;
   std::vector<std::uint32_t> heads_;  ///< of the buckets; the last one holds what is beyond the calendar
   std::vector<std::uint32_t> heap_;   ///< all balls of the current bucket, and before

@@ -17,8 +17,9 @@ namespace carom {
 /// The balls within a step, each flying on its own parabola from its own moment on, and the account of what
 /// walls and immovable balls push.
 ///
-/// Few balls are hit in a step. These are touched one by one, and a record is kept of each; the others fly
-/// from the step's start to its end together, in loops over plain arrays.
+/// Few balls are hit in a step. These are touched one by one, and a record is kept of each; all fly
+/// from the step's start to its end together, in loops over plain arrays, and those with a record are put
+/// back.
 ///
 /// @tparam kAccelerates  false: no acceleration is stored, added, or even zero
 /// @tparam kFriction     whether pushes can turn the balls
