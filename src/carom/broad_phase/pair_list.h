@@ -74,10 +74,11 @@ class PairList {
     farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
   }
 
-  /// Now and then, before build(): sorts the balls in memory, so that those that are looked at together are
-  /// loaded together. Returns whether it did; then the list holds no more.
+  /// Before the first build(), and now and then later: sorts the balls in memory, so that those that are looked
+  /// at together are loaded together. Returns whether it did; then the list holds no more.
   bool sort(World<Dim>& world) {
-    if (builds_in_this_order_ < kBuildsInAnOrder || bound_.empty()) return false;
+    if (builds_in_this_order_ < kBuildsInAnOrder || world.size() == 0) return false;
+    if (bound_.empty()) find_first_skin(world);
     builds_in_this_order_ = 0;
     Column<std::uint32_t> order;
     broad_phase_->hand_over_order(order);
@@ -93,17 +94,10 @@ class PairList {
   template <class Way>
   void build(const World<Dim>& world, const VectorColumn<Dim>& position,
              const std::vector<Plane<Dim>>& planes, const Way& way_m) {
-    choose_skin(world);
-    bound_.resize(world.size());
-    threads_.in_parallel(world.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
-      }
-    });
-    broad_phase_->build(position, bound_, threads_);
-    broad_phase_->find_pairs(pairs_, threads_);
+    find_pairs(world, position, way_m);
     find_planes(world, planes);
     forget_ways(world);
+    choose_skin(world);
     ++builds_in_this_order_;
   }
 
@@ -119,25 +113,47 @@ class PairList {
   /// Pairs that the skin adds for each ball: more of them make every step dearer, fewer make lists shorter
   /// lived. Measured, SPEED.md.
   static constexpr double kMorePairs = 0.75;
-  /// Half the skin of the first list, by the balls' mean radius.
+  /// The first guess of half the skin, by the balls' mean radius; and by how much a better one is larger that is
+  /// tried as well.
   static constexpr double kFirstGuess = 0.2;
+  static constexpr double kMuchLarger = 1.25;
+  static constexpr int kMostGuesses = 8;
   /// Lists after which balls have left the order in which they were sorted.
   static constexpr int kBuildsInAnOrder = 16;
   /// For sums of ways, those of floats included: each addition is off by 2⁻²⁴ at most.
   static constexpr double kRoundUp = 1.0 + 0x1p-20;
   static constexpr double kNothingHolds = -1.0;
 
-  /// Half the skin that would have added kMorePairs for each ball to the pairs that touch, had the last list
-  /// been made with it: with n balls in a unit of space around each, ½ n C R^Dim pairs are nearer than R.
+  /// Makes lists that nobody uses, until one has the skin that it should have had.
+  void find_first_skin(const World<Dim>& world) {
+    double radii = 0.0;
+    for (std::size_t i = 0; i < world.size(); ++i) radii += world.radius[i];
+    diameter_m_ = 2.0 * radii / static_cast<double>(world.size());
+    half_skin_m_ = skin_ == PairSkin::kNone ? 0.0 : 0.5 * kFirstGuess * diameter_m_;
+    for (int guess = 0; guess < kMostGuesses; ++guess) {
+      const double guess_m = half_skin_m_;
+      find_pairs(world, world.position, [](std::size_t) { return 0.0; });
+      choose_skin(world);
+      if (half_skin_m_ <= kMuchLarger * guess_m) return;
+    }
+  }
+
+  template <class Way>
+  void find_pairs(const World<Dim>& world, const VectorColumn<Dim>& position, const Way& way_m) {
+    bound_.resize(world.size());
+    threads_.in_parallel(world.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
+      }
+    });
+    broad_phase_->build(position, bound_, threads_);
+    broad_phase_->find_pairs(pairs_, threads_);
+  }
+
+  /// For the next list: half the skin that would have added kMorePairs for each ball to the pairs that touch, had
+  /// this list been made with it: with n balls in a unit of space around each, ½ n C R^Dim pairs are nearer than R.
   void choose_skin(const World<Dim>& world) {
     if (skin_ == PairSkin::kNone || world.size() == 0) return;
-    if (half_skin_m_ == 0.0) {
-      double radii = 0.0;
-      for (std::size_t i = 0; i < world.size(); ++i) radii += world.radius[i];
-      diameter_m_ = 2.0 * radii / static_cast<double>(world.size());
-      half_skin_m_ = 0.5 * kFirstGuess * diameter_m_;
-      return;
-    }
     const double volume = std::pow(diameter_m_ + 2.0 * half_skin_m_, Dim);
     const double pairs_per_ball = static_cast<double>(pairs_.size() + 1) / static_cast<double>(world.size());
     const double wanted = std::pow(diameter_m_, Dim) + kMorePairs / pairs_per_ball * volume;
@@ -181,7 +197,7 @@ class PairList {
   PairSkin skin_;
   const Threads& threads_;
   double diameter_m_ = 0.0;  ///< mean
-  double half_skin_m_ = 0.0;
+  double half_skin_m_ = 0.0;  ///< of the next list
   double enough_m_ = kNothingHolds;  ///< how far a ball may go until the list is worth nothing
   double travelled_m_ = 0.0;
   double rounding_m_ = 0.0;  ///< of coordinates, in a step
