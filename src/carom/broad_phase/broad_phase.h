@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "carom/broad_phase/reach.h"
 #include "carom/world.h"
 
 namespace carom {
@@ -18,9 +19,9 @@ using BallPair = std::pair<std::uint32_t, std::uint32_t>;
 /// it stood when the step began, so i and j may meet only if |x_i - x_j| <= bound[i] + bound[j]. Every broad
 /// phase reports exactly these pairs, in an order of its own; what follows does not depend on the order.
 ///
-/// This is how an evolver sees it: one call a step, and one for each ball that was hit. Inside, each is a
-/// template that visits pairs without calls. One whose build() takes threads, and whose for_each_pair() a
-/// stretch of its balls, is shared among threads.
+/// This is how an evolver sees it: one call for a list of pairs, and one for each ball that gets farther than
+/// the list allows for. Inside, each is a template that visits pairs without calls. One whose build() takes
+/// threads, and whose for_each_pair() a stretch of its balls, is shared among threads.
 template <int Dim>
 class BroadPhase {
  public:
@@ -31,19 +32,20 @@ class BroadPhase {
 
   virtual std::string_view name() const = 0;
 
-  /// Starts a step. Positions and bounds are columns of the caller's: the positions stay as they are during
-  /// the step, the bounds may grow.
+  /// Notes where the balls stand. Positions and bounds are columns of the caller's: the positions stay as
+  /// they are until the pairs are found, the bounds may grow later.
   virtual void build(const VectorColumn<Dim>& position, std::span<const double> bound,
                      const Threads& threads) = 0;
 
-  /// Replaces `pairs` by every pair that may meet, each once.
+  /// Replaces `pairs` by every pair that may meet, each once. @pre nothing has changed since build()
   virtual void find_pairs(Column<BallPair>& pairs, const Threads& threads) const = 0;
 
   /// Says that bound[ball] has grown.
   virtual void bound_grew(std::size_t ball) = 0;
 
-  /// Replaces `others` by every other ball that `ball` may meet.
-  virtual void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const = 0;
+  /// Replaces `others` by every ball that may meet something with this reach, from where it stood at build()
+  /// and by its bound as it is; others may be among them.
+  virtual void find_near(const Reach<Dim>& reach, std::vector<std::uint32_t>& others) const = 0;
 
   /// Replaces `balls` by all balls in an order in which neighbours stand together; by none where the broad
   /// phase has no such order. What it was built from may go with it: it has to be built anew. @pre build()
@@ -85,10 +87,10 @@ class BroadPhaseOf final : public BroadPhase<Dim> {
 
   void bound_grew(std::size_t ball) override { visitor_.bound_grew(ball); }
 
-  void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const override {
+  void find_near(const Reach<Dim>& reach, std::vector<std::uint32_t>& others) const override {
     others.clear();
     visitor_.for_each_near(
-        ball, [&others](std::size_t other) { others.push_back(static_cast<std::uint32_t>(other)); });
+        reach, [&others](std::size_t other) { others.push_back(static_cast<std::uint32_t>(other)); });
   }
 
   void hand_over_order(Column<std::uint32_t>& balls) override {

@@ -15,8 +15,8 @@ class BruteForce {
  public:
   static constexpr std::string_view kName = "brute-force";
 
-  /// Starts a step. Positions and bounds are columns of the caller's: the positions stay as they are during
-  /// the step, the bounds may grow.
+  /// Notes where the balls stand. Positions and bounds are columns of the caller's: the positions stay as
+  /// they are until the pairs are found, the bounds may grow later.
   void build(const VectorColumn<Dim>& position, std::span<const double> bound) {
     position_ = &position;
     bound_ = bound;
@@ -35,12 +35,10 @@ class BruteForce {
   /// Says that bound[ball] has grown.
   void bound_grew(std::size_t /*ball*/) {}
 
-  /// Calls visit(j) for every other ball that `ball` may meet.
+  /// Calls visit(j) for every ball that may meet something with this reach; here, for all.
   template <class Visit>
-  void for_each_near(std::size_t ball, Visit&& visit) const {
-    for (std::size_t j = 0; j < bound_.size(); ++j) {
-      if (j != ball && meets(ball, j)) visit(j);
-    }
+  void for_each_near(const Reach<Dim>& /*reach*/, Visit&& visit) const {
+    for (std::size_t j = 0; j < bound_.size(); ++j) visit(j);
   }
 
   const Count& count() const { return count_; }
@@ -53,7 +51,7 @@ class BruteForce {
     return may_meet(reach(i), reach(j));
   }
 
-  const VectorColumn<Dim>* position_ = nullptr;  ///< where the balls stood when the step began
+  const VectorColumn<Dim>* position_ = nullptr;  ///< where the balls stand
   std::span<const double> bound_;
   [[no_unique_address]] Count count_;
 };

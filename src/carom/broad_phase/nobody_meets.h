@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "carom/world.h"
+#include "carom/broad_phase/reach.h"
 
 namespace carom {
 
@@ -18,7 +18,7 @@ class NobodyMeets {
   void for_each_pair(Visit&& /*visit*/) const {}
   void bound_grew(std::size_t /*ball*/) {}
   template <class Visit>
-  void for_each_near(std::size_t /*ball*/, Visit&& /*visit*/) const {}
+  void for_each_near(const Reach<Dim>& /*reach*/, Visit&& /*visit*/) const {}
 };
 
 }  // namespace carom

@@ -38,9 +38,13 @@ enum class PairSkin { kChosen, kNone };
 ///
 /// The trick: a broad phase is asked for all pairs that come as near as the sum of their radii and a *skin*
 /// s. Until some ball has moved by s/2 no other pair can touch, for two balls come nearer to each other by at
-/// most s. So the list is made anew only when the longest way that any ball may have gone comes to s/2; and
-/// that way is known from the largest speed, without a look at any ball. Source: L. Verlet, Phys. Rev. 159,
-/// 98 (1967).
+/// most s. So the list is made anew only when the longest way that a ball may have gone comes to s/2; and
+/// that way is known from a speed, without a look at any ball. Source: L. Verlet, Phys. Rev. 159, 98 (1967).
+///
+/// Were it the speed of the fastest ball, lists would live the shorter the more balls there are, for the sake
+/// of a few. So ways are counted at a *cruising speed* that few balls exceed; and each of these adds to the
+/// list, when it is made or when an impact has made the ball fast, the pairs that it may get to until the
+/// list ends.
 ///
 /// The skin decides what is looked at, never what happens: whoever takes pairs from here tests them as if
 /// they came from a broad phase that was built in this step. With the skin kNone they do: that is the slow
@@ -51,21 +55,13 @@ class PairList {
   PairList(std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin, const Threads& threads)
       : broad_phase_(std::move(broad_phase)), skin_(skin), threads_(threads) {}
 
-  /// Whether balls that go at most this much farther, m, can touch only in pairs that the list has.
+  /// Whether balls can touch only in pairs that the list has while those that cruise go this much farther, m.
   bool holds(double way_m = 0.0) const {
     return (travelled_m_ + way_m) * kRoundUp + farthest_jump_m_ <= enough_m_;
   }
 
-  /// Every ball has gone at most this far, m.
+  /// No ball that cruises has gone farther than this, m.
   void travelled(double way_m) { travelled_m_ += way_m * kRoundUp + rounding_m_; }
-
-  /// A ball may get this far from where it was when the list was made, m, whatever the others do.
-  void strays(std::size_t ball, double radius, double way_m) {
-    travelled_m_ = std::max(travelled_m_, way_m);
-    if (radius + way_m <= bound_[ball]) return;
-    bound_[ball] = radius + way_m;
-    broad_phase_->bound_grew(ball);
-  }
 
   /// A ball was put this far away, m, beside what it travels.
   void jumped(std::size_t ball, double way_m) {
@@ -74,8 +70,8 @@ class PairList {
     farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
   }
 
-  /// Before the first build(), and now and then later: sorts the balls in memory, so that those that are looked
-  /// at together are loaded together. Returns whether it did; then the list holds no more.
+  /// Before the first build(), and now and then later: sorts the balls in memory, so that those that are
+  /// looked at together are loaded together. Returns whether it did; then the list holds no more.
   bool sort(World<Dim>& world) {
     if (builds_in_this_order_ < kBuildsInAnOrder || world.size() == 0) return false;
     if (bound_.empty()) find_first_skin(world);
@@ -88,17 +84,74 @@ class PairList {
     return true;
   }
 
+  /// Before build(), where balls keep their speeds between impacts: chooses the cruising speed.
+  void measure_speeds(const World<Dim>& world) {
+    const double largest = largest_norm(world.velocity, threads_);
+    cruise_mps_ = std::min(largest, std::max(largest / kMostTimes, kCruise * typical_speed(world)));
+    fast_.clear();
+    threads_.collect(world.size(), fast_,
+                     [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+                       for_each_passing(
+                           begin, end, [&](std::size_t ball) { return times_cruise(world, ball) > 1.0; },
+                           [&](std::size_t ball) { found.push_back(static_cast<std::uint32_t>(ball)); });
+                     });
+    if (fast_.size() <= few(world)) return;
+    cruise_mps_ = largest;
+    fast_.clear();
+  }
+
+  /// Whether the next list will serve more than a step or two in which balls go this far, m.
+  bool may_last(double way_m) const { return 2.0 * way_m <= next_half_skin_m_; }
+
+  double cruise_mps() const { return cruise_mps_; }
+  /// The speed of a ball by the cruising speed; 1 where it is not faster.
+  double times_cruise(const World<Dim>& world, std::size_t ball) const {
+    const double speed = world.velocity[ball].norm();
+    return speed > cruise_mps_ ? speed / cruise_mps_ : 1.0;
+  }
+  /// Who was faster than that when the speeds were measured: each has to hurry() once the list is made.
+  std::span<const std::uint32_t> fast() const { return fast_; }
+
   /// Makes the list for the balls where they are.
-  /// @param position  where that is; what stays as it is can be asked of the broad phase later
-  /// @param way_m     of each ball, how far the list must hold at least, m
+  /// @param way_m  of each ball, how far the list must hold at least, m
   template <class Way>
-  void build(const World<Dim>& world, const VectorColumn<Dim>& position,
-             const std::vector<Plane<Dim>>& planes, const Way& way_m) {
-    find_pairs(world, position, way_m);
+  void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, const Way& way_m) {
+    find_pairs(world, way_m);
     find_planes(world, planes);
     forget_ways(world);
     choose_skin(world);
     ++builds_in_this_order_;
+  }
+
+  /// How far a ball goes at most, m, while those that cruise go so far; and from then on, so many times as
+  /// far as they.
+  struct Haste {
+    double way_m;
+    double cruisers_way_m;
+    double times;
+  };
+
+  /// The ball may be faster than the list allows for: adds what pairs it may get to until the list ends, or
+  /// ends the list after the step at hand. What stands in the list already may be added again.
+  /// @param is_new  whether the list has no pair of the ball and another yet, as far as the caller cares
+  template <class IsNew>
+  void hurry(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, std::size_t ball,
+             const Haste& haste, const IsNew& is_new) {
+    if (haste.times <= 1.0 && holds(haste.cruisers_way_m)) return;
+    if (haste.times > kMostTimes) enough_m_ = kNothingHolds;
+    const double left_m = std::max(0.0, half_skin_m_ - travelled_m_ - haste.cruisers_way_m);
+    const double later_m = enough_m_ == kNothingHolds ? 0.0 : haste.times * left_m;
+    const double ahead_m = (haste.way_m + later_m) * kRoundUp + 2.0 * rounding_m_;
+    const double bound = world.radius[ball] + (gone(world, ball) + ahead_m) * kRoundUp;
+    if (!(bound > bound_[ball])) return;
+    bound_[ball] = bound;
+    broad_phase_->bound_grew(ball);
+    add_pairs(world, ball, ahead_m, is_new);
+    for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
+      if (planes[plane].gap(world.position[ball], world.radius[ball] + ahead_m) > 0.0) continue;
+      besides_.emplace_back(static_cast<std::uint32_t>(ball), plane);
+    }
+    if (++hurried_ > few(world)) enough_m_ = kNothingHolds;
   }
 
   /// Two balls that may touch.
@@ -113,11 +166,20 @@ class PairList {
   /// Pairs that the skin adds for each ball: more of them make every step dearer, fewer make lists shorter
   /// lived. Measured, SPEED.md.
   static constexpr double kMorePairs = 0.75;
-  /// The first guess of half the skin, by the balls' mean radius; and by how much a better one is larger that is
-  /// tried as well.
+  /// The first guess of half the skin, by the balls' mean radius; and by how much a better one is larger that
+  /// is tried as well.
   static constexpr double kFirstGuess = 0.2;
   static constexpr double kMuchLarger = 1.25;
   static constexpr int kMostGuesses = 8;
+  /// The cruising speed by the root of the mean square, where the fastest ball is faster. Of the speeds in a
+  /// gas (J. C. Maxwell, 1860) 0.2 % are larger in space and 0.8 % in the plane.
+  static constexpr double kCruise = 2.2;
+  /// A ball faster by more than this looks too far around: then the cruising speed is larger.
+  static constexpr double kMostTimes = 4.0;
+  /// Of the balls: if more than one in so many are fast, it is dearer to look around each than to make lists
+  /// more often.
+  static constexpr std::size_t kFewIsOneIn = 50;
+  static constexpr std::size_t kSample = 1024;
   /// Lists after which balls have left the order in which they were sorted.
   static constexpr int kBuildsInAnOrder = 16;
   /// For sums of ways, those of floats included: each addition is off by 2⁻²⁴ at most.
@@ -129,36 +191,73 @@ class PairList {
     double radii = 0.0;
     for (std::size_t i = 0; i < world.size(); ++i) radii += world.radius[i];
     diameter_m_ = 2.0 * radii / static_cast<double>(world.size());
-    half_skin_m_ = skin_ == PairSkin::kNone ? 0.0 : 0.5 * kFirstGuess * diameter_m_;
+    next_half_skin_m_ = skin_ == PairSkin::kNone ? 0.0 : 0.5 * kFirstGuess * diameter_m_;
     for (int guess = 0; guess < kMostGuesses; ++guess) {
-      const double guess_m = half_skin_m_;
-      find_pairs(world, world.position, [](std::size_t) { return 0.0; });
+      find_pairs(world, [](std::size_t) { return 0.0; });
       choose_skin(world);
-      if (half_skin_m_ <= kMuchLarger * guess_m) return;
+      if (next_half_skin_m_ <= kMuchLarger * half_skin_m_) return;
     }
   }
 
   template <class Way>
-  void find_pairs(const World<Dim>& world, const VectorColumn<Dim>& position, const Way& way_m) {
+  void find_pairs(const World<Dim>& world, const Way& way_m) {
+    half_skin_m_ = next_half_skin_m_;
     bound_.resize(world.size());
     threads_.in_parallel(world.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
       }
     });
-    broad_phase_->build(position, bound_, threads_);
+    broad_phase_->build(world.position, bound_, threads_);
     broad_phase_->find_pairs(pairs_, threads_);
   }
 
-  /// For the next list: half the skin that would have added kMorePairs for each ball to the pairs that touch, had
-  /// this list been made with it: with n balls in a unit of space around each, ½ n C R^Dim pairs are nearer than R.
+  /// For the next list: half the skin that would have added kMorePairs for each ball to the pairs that touch,
+  /// had this list been made with it: with n balls in a unit of space around each, ½ n C R^Dim pairs are
+  /// nearer than R.
   void choose_skin(const World<Dim>& world) {
     if (skin_ == PairSkin::kNone || world.size() == 0) return;
     const double volume = std::pow(diameter_m_ + 2.0 * half_skin_m_, Dim);
     const double pairs_per_ball = static_cast<double>(pairs_.size() + 1) / static_cast<double>(world.size());
     const double wanted = std::pow(diameter_m_, Dim) + kMorePairs / pairs_per_ball * volume;
     const double half_skin_m = 0.5 * (std::pow(wanted, 1.0 / Dim) - diameter_m_);
-    half_skin_m_ = std::clamp(half_skin_m, 0.5 * half_skin_m_, 2.0 * half_skin_m_);
+    next_half_skin_m_ = std::clamp(half_skin_m, 0.5 * half_skin_m_, 2.0 * half_skin_m_);
+  }
+
+  /// The root of the speeds' mean square, m/s, of a sample.
+  static double typical_speed(const World<Dim>& world) {
+    const std::size_t stride = 1 + world.size() / kSample;
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < world.size(); i += stride, ++count)
+      squares += world.velocity[i].squaredNorm();
+    return std::sqrt(squares / std::max(1.0, count));
+  }
+
+  static std::size_t few(const World<Dim>& world) { return world.size() / kFewIsOneIn; }
+
+  /// How far a ball has gone at most since the list was made, m. In the share of the list's life that is over
+  /// it has gone no more than that share of what it is allowed: one that became fast later had gone less
+  /// before.
+  double gone(const World<Dim>& world, std::size_t ball) const {
+    const double jump_m = jumps_m_.empty() ? 0.0 : static_cast<double>(jumps_m_[ball]);
+    if (travelled_m_ == 0.0) return jump_m;
+    const double over = travelled_m_ < half_skin_m_ ? travelled_m_ / half_skin_m_ : 1.0;
+    return over * (bound_[ball] - world.radius[ball]) + jump_m;
+  }
+
+  /// The pairs of a ball that goes this far, m, from where it is.
+  template <class IsNew>
+  void add_pairs(const World<Dim>& world, std::size_t ball, double ahead_m, const IsNew& is_new) {
+    const Reach<Dim> reach{world.position[ball], world.radius[ball] + ahead_m};
+    broad_phase_->find_near(reach, near_);
+    for (const std::uint32_t other : near_) {
+      // Where the other is now, it goes no farther than in all of the list's life.
+      if (other == ball || !may_meet(reach, {world.position[other], bound_[other]}) || !is_new(other))
+        continue;
+      const auto self = static_cast<std::uint32_t>(ball);
+      pairs_.emplace_back(std::min(self, other), std::max(self, other));
+    }
   }
 
   void find_planes(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
@@ -186,9 +285,10 @@ class PairList {
           farthest, threads_.largest(places.size(), [&](std::size_t i) { return std::abs(places[i]); }));
     }
     const double widest = threads_.largest(bound_.size(), [&](std::size_t i) { return bound_[i]; });
-    rounding_m_ = 4.0 * kEpsilon * (farthest + widest);
+    rounding_m_ = 4.0 * kEpsilon * (farthest + widest + kMostTimes * half_skin_m_);
     enough_m_ = skin_ == PairSkin::kNone ? kNothingHolds : half_skin_m_ - 2.0 * rounding_m_;
     travelled_m_ = 0.0;
+    hurried_ = 0;
     farthest_jump_m_ = 0.0;
     std::fill(jumps_m_.begin(), jumps_m_.end(), 0.0F);
   }
@@ -197,15 +297,20 @@ class PairList {
   PairSkin skin_;
   const Threads& threads_;
   double diameter_m_ = 0.0;  ///< mean
-  double half_skin_m_ = 0.0;  ///< of the next list
-  double enough_m_ = kNothingHolds;  ///< how far a ball may go until the list is worth nothing
+  double half_skin_m_ = 0.0;
+  double next_half_skin_m_ = 0.0;
+  double cruise_mps_ = 0.0;
+  double enough_m_ = kNothingHolds;  ///< how far a ball that cruises may go until the list is worth nothing
   double travelled_m_ = 0.0;
   double rounding_m_ = 0.0;  ///< of coordinates, in a step
+  std::size_t hurried_ = 0;  ///< times that a ball added pairs
   double farthest_jump_m_ = 0.0;
   Column<float> jumps_m_;  ///< of each ball; empty before the first
   Column<double> bound_;   ///< m, radius and how far the ball may get from where it was
   Column<BallPair> pairs_;
   std::vector<BallPair> besides_;
+  std::vector<std::uint32_t> fast_;
+  std::vector<std::uint32_t> near_;
   int builds_in_this_order_ = kBuildsInAnOrder;
 };
 

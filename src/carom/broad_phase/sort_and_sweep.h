@@ -37,8 +37,8 @@ class SortAndSweep {
   void for_each_pair(Visit&& visit) const {
     for (std::size_t a = 0; a < items_.size(); ++a) {
       const double end = end_of(items_[a].reach);
-      for (std::size_t b = a + 1; b < items_.size() && start_[b].first <= end + growth_; ++b) {
-        if (meets(items_[a], items_[b])) visit_in_order(items_[a].ball, items_[b].ball, visit);
+      for (std::size_t b = a + 1; b < items_.size() && start_[b].first <= end; ++b) {
+        if (meets(items_[a].reach, items_[b].reach)) visit_in_order(items_[a].ball, items_[b].ball, visit);
       }
     }
   }
@@ -54,14 +54,13 @@ class SortAndSweep {
   }
 
   template <class Visit>
-  void for_each_near(std::size_t ball, Visit&& visit) const {
-    const Item& self = items_[place_of_[ball]];
-    const double start = start_of(self.reach);
-    const double end = end_of(self.reach) + growth_;
+  void for_each_near(const Reach<Dim>& reach, Visit&& visit) const {
+    const double start = start_of(reach);
+    const double end = end_of(reach) + growth_;
     const auto behind = std::partition_point(start_.begin(), start_.end(),
                                              [end](const Start& other) { return other.first <= end; });
     for (auto b = static_cast<std::size_t>(behind - start_.begin()); b-- > 0 && farthest_end_[b] >= start;) {
-      if (items_[b].ball != ball && meets(self, items_[b])) visit(std::size_t{items_[b].ball});
+      if (meets(reach, items_[b].reach)) visit(std::size_t{items_[b].ball});
     }
   }
 
@@ -120,9 +119,9 @@ class SortAndSweep {
     count_.build_operations(items_.size());
   }
 
-  bool meets(const Item& a, const Item& b) const {
+  bool meets(const Reach<Dim>& a, const Reach<Dim>& b) const {
     count_.pair_test();
-    return may_meet(a.reach, b.reach);
+    return may_meet(a, b);
   }
 
   template <class Visit>

@@ -74,11 +74,10 @@ class Tree {
   }
 
   template <class Visit>
-  void for_each_near(std::size_t ball, Visit&& visit) const {
-    const Item& self = items_[place_of_[ball]];
-    search(ReachBox<Dim>::around(self.reach), 0, [&](const Node& node) {
+  void for_each_near(const Reach<Dim>& reach, Visit&& visit) const {
+    search(ReachBox<Dim>::around(reach), 0, [&](const Node& node) {
       for (std::uint32_t b = node.own.first; b < node.own.end; ++b) {
-        if (items_[b].ball != ball && meets(self, items_[b])) visit(std::size_t{items_[b].ball});
+        if (meets(reach, items_[b].reach)) visit(std::size_t{items_[b].ball});
       }
     });
   }
@@ -278,12 +277,13 @@ class Tree {
 
   template <class Visit>
   void visit_if_near(const Item& a, const Item& b, Visit&& visit) const {
-    if (meets(a, b)) visit(std::size_t{std::min(a.ball, b.ball)}, std::size_t{std::max(a.ball, b.ball)});
+    if (meets(a.reach, b.reach))
+      visit(std::size_t{std::min(a.ball, b.ball)}, std::size_t{std::max(a.ball, b.ball)});
   }
 
-  bool meets(const Item& a, const Item& b) const {
+  bool meets(const Reach<Dim>& a, const Reach<Dim>& b) const {
     count_.pair_test();
-    return may_meet(a.reach, b.reach);
+    return may_meet(a, b);
   }
 
   std::span<const double> bound_;

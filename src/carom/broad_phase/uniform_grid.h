@@ -43,12 +43,13 @@ class UniformGrid {
       const std::int64_t layer = self.cell.back();
       Block block = block_around(self.reach, self.level);
       block.low.back() = layer;
-      visit_block(self, block, visit_pair, [&self, layer](const Entry& other) {
+      visit_block(self.reach, block, visit_pair, [&self, layer](const Entry& other) {
         return other.cell.back() > layer || (other.cell.back() == layer && other.ball > self.ball);
       });
       for (std::size_t level = self.level + std::size_t{1}; level < levels_.size(); ++level) {
         if (levels_[level].balls == 0) continue;
-        visit_block(self, block_around(self.reach, level), visit_pair, [](const Entry&) { return true; });
+        visit_block(self.reach, block_around(self.reach, level), visit_pair,
+                    [](const Entry&) { return true; });
       }
     }
   }
@@ -60,12 +61,10 @@ class UniformGrid {
   }
 
   template <class Visit>
-  void for_each_near(std::size_t ball, Visit&& visit) const {
-    const Entry& self = entries_[place_of_[ball]];
+  void for_each_near(const Reach<Dim>& reach, Visit&& visit) const {
     for (std::size_t level = 0; level < levels_.size(); ++level) {
       if (levels_[level].balls == 0) continue;
-      visit_block(self, block_around(self.reach, level), visit,
-                  [ball](const Entry& other) { return other.ball != ball; });
+      visit_block(reach, block_around(reach, level), visit, [](const Entry&) { return true; });
     }
   }
 
@@ -180,13 +179,13 @@ class UniformGrid {
     return {cell_of(reach.centre - half, level), cell_of(reach.centre + half, level), level};
   }
 
-  /// Calls visit(j) for the wanted balls in a block that `self` may meet.
+  /// Calls visit(j) for the wanted balls in a block that something with this reach may meet.
   template <class Visit, class Wanted>
-  void visit_block(const Entry& self, const Block& block, Visit&& visit, Wanted&& wanted) const {
+  void visit_block(const Reach<Dim>& reach, const Block& block, Visit&& visit, Wanted&& wanted) const {
     const auto visit_if_near = [&](const Entry& other) {
       if (other.level != block.level || !wanted(other)) return;
       count_.pair_test();
-      if (may_meet(self.reach, other.reach)) visit(std::size_t{other.ball});
+      if (may_meet(reach, other.reach)) visit(std::size_t{other.ball});
     };
     if (cells_in(block) > static_cast<double>(entries_.size())) {  // cheaper to look at every ball
       for (const Entry& other : entries_) visit_if_near(other);

@@ -49,7 +49,6 @@ class WrappedGrid {
   /// meets itself and those behind it: of two neighbours one is behind the other.
   template <class Visit>
   void for_each_pair(std::size_t begin, std::size_t end, Visit&& visit) const {
-    if (2.0 * largest_bound_ * cells_per_m_ >= 1.0) return for_each_pair_of_grown(begin, end, visit);
     const std::int32_t rows = shape_[1] * (Dim == 3 ? shape_[Dim - 1] : 1);
     for (std::int32_t row = 0; row < rows; ++row) {
       const std::uint32_t row_begin = cells(row, 0, 0).first;
@@ -68,27 +67,23 @@ class WrappedGrid {
 
   void bound_grew(std::size_t ball) { largest_bound_ = std::max(largest_bound_, bound_[ball]); }
 
+  /// All balls in the cells around: where in its cell a ball stood is not kept.
   template <class Visit>
-  void for_each_near(std::size_t ball, Visit&& visit) const {
-    const Reach<Dim> self = reach(ball);
+  void for_each_near(const Reach<Dim>& reach, Visit&& visit) const {
     // Along an axis cells differ by at most the whole part of the distance, in cells, and one.
-    const double away = std::min((self.bound + largest_bound_) * cells_per_m_ + kRounding, 0x1p29);
+    const double away = std::min((reach.bound + largest_bound_) * cells_per_m_ + kRounding, 0x1p29);
     const std::int32_t around = static_cast<std::int32_t>(away) + 1;
     std::array<std::int32_t, 3> first{};
     std::array<std::int32_t, 3> count = {1, 1, 1};
     for (int axis = 0; axis < Dim; ++axis) {
       const auto k = static_cast<std::size_t>(axis);
       count[k] = std::min(2 * around + 1, shape_[k]);
-      first[k] = wrapped(cell_along(axis, self.centre[axis]), k) - (count[k] < shape_[k] ? around : 0);
+      first[k] = wrapped(cell_along(axis, reach.centre[axis]), k) - (count[k] < shape_[k] ? around : 0);
     }
     for (std::int32_t z = first[2]; z < first[2] + count[2]; ++z) {
       for (std::int32_t y = first[1]; y < first[1] + count[1]; ++y) {
         for_each_stretch(row_of(y, z), first[0], count[0], [&](Stretch stretch) {
-          for (std::uint32_t q = stretch.first; q < stretch.end; ++q) {
-            const std::size_t other = ball_at_[q];
-            count_.pair_test();
-            if (other != ball && may_meet(self, reach(other))) visit(other);
-          }
+          for (std::uint32_t q = stretch.first; q < stretch.end; ++q) visit(std::size_t{ball_at_[q]});
         });
       }
     }
@@ -263,16 +258,6 @@ class WrappedGrid {
       const std::size_t j = ball_at_[q];
       count_.pair_test();
       if (may_meet(self, reach(j))) visit(std::min(i, j), std::max(i, j));
-    }
-  }
-
-  /// Some reach beyond the neighbouring cells.
-  template <class Visit>
-  void for_each_pair_of_grown(std::size_t begin, std::size_t end, Visit&& visit) const {
-    for (std::size_t i = begin; i < end; ++i) {
-      for_each_near(i, [&](std::size_t j) {
-        if (i < j) visit(i, j);
-      });
     }
   }
 

@@ -27,6 +27,7 @@ template <int Dim, bool kAccelerates, bool kFriction>
 class Flights {
  public:
   /// Whether a push that lasts turns balls: then spins change in flight.
+  static constexpr bool kFieldsAct = kAccelerates;
   static constexpr bool kTurning = kAccelerates && kFriction;
 
   Flights(const Scenario& scene, std::unique_ptr<Flight<Dim>> model, const Threads& threads)
@@ -70,7 +71,7 @@ class Flights {
         model_->accelerations(world_, begin, end, step_s, acceleration_);
       });
       field_speed_ = step_s * largest_norm(acceleration_, threads_);
-      measure_fastest();
+      fastest_ = largest_norm(world_.velocity, threads_);
     }
   }
 
@@ -91,11 +92,8 @@ class Flights {
     records_.clear();
   }
 
-  /// How far a ball gets in this step at most, m, if it is not hit.
-  double longest_path() const { return (fastest_ + 0.5 * field_speed_) * step_s_; }
-
-  /// Makes the bound on the speeds what it is at this moment.
-  void measure_fastest() { fastest_ = largest_norm(world_.velocity, threads_); }
+  /// How far a ball gets in this step at most, m, where fields act.
+  double longest_path() const requires kAccelerates { return (fastest_ + 0.5 * field_speed_) * step_s_; }
 
   /// Where the ball can get in this step.
   Reach<Dim> reach(std::size_t ball) const {
@@ -106,11 +104,16 @@ class Flights {
   /// After a new flight has begun; returns whether the ball can get farther than before.
   bool widen_reach(std::size_t ball) {
     Reach<Dim>& reach = record_of(ball).reach;
-    const double moved = (world_.position[ball] - reach.centre).norm();
-    const double bound = world_.radius[ball] + moved + path_bound(ball, left_s(ball));
+    const double bound = world_.radius[ball] + way_in_step(ball);
     if (bound <= reach.bound) return false;
     reach.bound = bound;
     return true;
+  }
+
+  /// How far from where it began the step a ball may get in it, m. @pre it was touched
+  double way_in_step(std::size_t ball) const {
+    const double moved = (world_.position[ball] - records_[touched_[ball]].reach.centre).norm();
+    return moved + path_bound(ball, left_s(ball));
   }
 
   /// A ball's flight from its clock on.
@@ -201,7 +204,7 @@ class Flights {
   void note_flight(std::size_t ball) {
     record_of(ball);
     ++stamp_[ball];
-    fastest_ = std::max(fastest_, world_.velocity[ball].norm());
+    if constexpr (kAccelerates) fastest_ = std::max(fastest_, world_.velocity[ball].norm());
   }
 
   void forget(std::size_t ball) {
@@ -260,7 +263,7 @@ class Flights {
   Account<Dim> account_;
   double step_s_ = 0.0;
   double field_speed_ = 0.0;
-  double fastest_ = std::numeric_limits<double>::infinity();  ///< m/s, no ball is faster
+  double fastest_ = 0.0;  ///< m/s, no ball is faster; where fields act
   Column<double> clock_;  ///< s, from the start of the step: where position and velocity stand
   Column<std::uint32_t> stamp_;
   Column<std::uint32_t> touched_;  ///< of each ball, which of the records is its

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,37 +16,41 @@ namespace carom {
 
 /// Which balls may meet in a step, by how far each may get in it. `Balls` are Flights (flights.h).
 ///
-/// Pairs come from a list that serves many steps (pair_list.h). Whom a ball may meet that was hit is asked of
-/// the broad phase as it was built for the list: its bound there holds for all these steps, and grows when
-/// the ball may get farther. What either finds is held against the reaches in this step, so that nothing
-/// depends on how long a list lives.
+/// Pairs come from a list that serves many steps (pair_list.h). Whom a ball may meet that was hit is read
+/// from it as well: the pairs of a ball are a chain, from the last in the list to the first. What is found is
+/// held against the reaches in this step, so that nothing depends on how long a list lives.
 template <int Dim, class Balls>
 class Neighbours {
  public:
   Neighbours(Balls& flights, std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin,
              const std::vector<Plane<Dim>>& planes, const Threads& threads)
-      : flights_(flights),
-        planes_(planes),
-        list_(std::move(broad_phase), skin, threads),
-        start_(flights.size()) {}
+      : flights_(flights), planes_(planes), list_(std::move(broad_phase), skin, threads) {}
 
   /// Between steps: sorts the balls in memory now and then.
   void sort() { list_.sort(flights_.world()); }
 
   /// @pre the flights of the step have begun
   void begin_step() {
-    if (!list_.holds(flights_.longest_path())) {
-      start_ = flights_.world().position;
-      list_.build(flights_.world(), start_, planes_,
-                  [this](std::size_t ball) { return flights_.path_bound(ball, flights_.step_s()); });
-      flights_.measure_fastest();
-    }
-    list_.travelled(flights_.longest_path());
+    if (list_.holds(longest_path())) return;
+    if constexpr (!Balls::kFieldsAct) list_.measure_speeds(world());
+    const bool lasts = list_.may_last(longest_path());
+    list_.build(world(), planes_,
+                [&](std::size_t ball) { return lasts ? 0.0 : flights_.path_bound(ball, flights_.step_s()); });
+    last_of_.assign(world().size(), kNone);
+    before_.clear();
+    chain_new_pairs();
+    for (const std::uint32_t ball : list_.fast()) hurry(ball, {0.0, 0.0, list_.times_cruise(world(), ball)});
   }
+
+  /// @pre the balls are where the step has brought them
+  void end_step() { list_.travelled(longest_path()); }
+
+  /// A ball was put this far away, m.
+  void jumped(std::size_t ball, double way_m) { list_.jumped(ball, way_m); }
 
   /// Two balls that may meet in this step, or in a later one.
   std::span<const BallPair> pairs() const { return list_.pairs(); }
-  /// A ball and a plane that may.
+  /// A ball and a plane that may; some stand here twice.
   std::span<const BallPair> besides() const { return list_.besides(); }
 
   bool may_meet_in_step(std::size_t a, std::size_t b) const {
@@ -52,27 +59,71 @@ class Neighbours {
 
   /// Every other ball that this one may meet in the step, in any order.
   void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const {
-    list_.broad_phase().find_near(ball, others);
-    std::erase_if(others, [&](std::uint32_t other) { return !may_meet_in_step(ball, other); });
+    others.clear();
+    for_each_listed(ball, [&](std::uint32_t other) {
+      if (may_meet_in_step(ball, other)) others.push_back(other);
+    });
   }
 
   /// After a new flight has begun: notes where it may lead. Returns whether the ball may meet more than
   /// before.
   bool widen(std::size_t ball) {
-    if (!flights_.widen_reach(ball)) return false;
-    const double moved = (flights_.world().position[ball] - start_[ball]).norm();
-    list_.strays(ball, flights_.world().radius[ball],
-                 moved + flights_.path_bound(ball, flights_.left_s(ball)));
-    return true;
+    const bool farther = flights_.widen_reach(ball);
+    double times = 1.0;
+    if constexpr (!Balls::kFieldsAct) times = list_.times_cruise(world(), ball);
+    hurry(ball, {flights_.way_in_step(ball), longest_path(), times});
+    return farther;
   }
 
   std::string_view name() const { return list_.name(); }
 
  private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  const World<Dim>& world() const { return flights_.world(); }
+
+  /// How far a ball that cruises may get in the step, m. Where fields act, that is any ball.
+  double longest_path() const {
+    if constexpr (Balls::kFieldsAct) return flights_.longest_path();
+    return list_.cruise_mps() * flights_.step_s();
+  }
+
+  void hurry(std::size_t ball, const typename PairList<Dim>::Haste& haste) {
+    list_.hurry(world(), planes_, ball, haste, [&](std::uint32_t other) { return !is_listed(ball, other); });
+    chain_new_pairs();
+  }
+
+  template <class Visit>
+  void for_each_listed(std::size_t ball, const Visit& visit) const {
+    const std::span<const BallPair> pairs = list_.pairs();
+    for (std::uint32_t k = last_of_[ball]; k != kNone;) {
+      const bool is_second = pairs[k].second == ball;
+      visit(is_second ? pairs[k].first : pairs[k].second);
+      k = is_second ? before_[k].second : before_[k].first;
+    }
+  }
+
+  bool is_listed(std::size_t ball, std::uint32_t other) const {
+    bool listed = false;
+    for_each_listed(ball, [&](std::uint32_t each) { listed = listed || each == other; });
+    return listed;
+  }
+
+  void chain_new_pairs() {
+    const std::span<const BallPair> pairs = list_.pairs();
+    for (auto k = static_cast<std::uint32_t>(before_.size()); k < pairs.size(); ++k) {
+      const auto [first, second] = pairs[k];
+      before_.emplace_back(last_of_[first], last_of_[second]);
+      last_of_[first] = last_of_[second] = k;
+    }
+  }
+
   Balls& flights_;
   const std::vector<Plane<Dim>>& planes_;
   PairList<Dim> list_;
-  VectorColumn<Dim> start_;  ///< positions when the list was made
+  Column<std::uint32_t> last_of_;  ///< of each ball, its last pair in the list
+  /// Of each pair, the pairs before it that its first and its second ball are in.
+  Column<std::pair<std::uint32_t, std::uint32_t>> before_;
 };
 
 }  // namespace carom

@@ -112,7 +112,7 @@ class StepEvolver final : public Simulation {
         for (std::size_t i = begin; i < end; ++i) x[i] += step_s * v[i];
       }
     });
-    near_.travelled(step_s * fastest_);
+    near_.travelled(step_s * (Traits::kAccelerates ? fastest_ : near_.cruise_mps()));
   }
 
   void find_contacts() {
@@ -129,12 +129,16 @@ class StepEvolver final : public Simulation {
     // The list is in an order of its own; the order of the contacts decides what happens.
     std::sort(touches_.begin(), touches_.end(),
               [this](const Touch& x, const Touch& y) { return rank(x) < rank(y); });
+    const auto twice = std::unique(touches_.begin(), touches_.end(),
+                                   [this](const Touch& x, const Touch& y) { return rank(x) == rank(y); });
+    touches_.erase(twice, touches_.end());
   }
 
   void look_around() {
     near_.sort(world_);
-    near_.build(world_, world_.position, planes_, [](std::size_t) { return 0.0; });
-    fastest_ = largest_norm(world_.velocity, threads_);
+    if constexpr (!Traits::kAccelerates) near_.measure_speeds(world_);
+    near_.build(world_, planes_, [](std::size_t) { return 0.0; });
+    for (const std::uint32_t ball : near_.fast()) hurry(ball);
   }
 
   bool overlap(std::uint32_t a, std::uint32_t b) const {
@@ -221,7 +225,17 @@ class StepEvolver final : public Simulation {
     return true;
   }
 
-  void note_speed(std::uint32_t ball) { fastest_ = std::max(fastest_, world_.velocity[ball].norm()); }
+  /// Where fields act the speeds of all are measured in every step.
+  void note_speed(std::uint32_t ball) {
+    if constexpr (!Traits::kAccelerates) {
+      if (near_.times_cruise(world_, ball) > 1.0) hurry(ball);
+    }
+  }
+
+  void hurry(std::uint32_t ball) {
+    const auto any = [](std::uint32_t) { return true; };
+    near_.hurry(world_, planes_, ball, {0.0, 0.0, near_.times_cruise(world_, ball)}, any);
+  }
 
   /// Rest has no rebound.
   Contact rebounding(Contact surface, double v_n) const {
@@ -345,7 +359,7 @@ class StepEvolver final : public Simulation {
   Place gravity_;  ///< m/s²
   VectorColumn<kDim> acceleration_;
   double field_speed_ = 0.0;  ///< m/s, what the strongest acceleration gives in a step
-  double fastest_ = 0.0;      ///< m/s, no ball is faster
+  double fastest_ = 0.0;      ///< m/s, no ball is faster; where fields act
   Account<kDim> account_;
 
   std::vector<Touch> touches_;

@@ -135,6 +135,7 @@ class ToiEvolver final : public Simulation {
     find_meetings();
     resolve_meetings();
     flights_.finish_step();
+    neighbours_.end_step();
   }
 
   void find_meetings() {
@@ -326,7 +327,9 @@ class ToiEvolver final : public Simulation {
   void resolve_barrier(std::uint32_t ball, const Plane<kDim>& face) {
     if (face.normal.dot(world().velocity[ball]) >= 0.0) return;
     ++flights_.account().tally.impacts;
+    const Place before = world().position[ball];
     barriers_.meet(flights_.world(), ball, face, flights_.account());
+    neighbours_.jumped(ball, (world().position[ball] - before).norm());
     begin_flights({ball});
   }
 
