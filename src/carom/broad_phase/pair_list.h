@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -154,6 +155,24 @@ class PairList {
     if (++hurried_ > few(world)) enough_m_ = kNothingHolds;
   }
 
+  /// Calls move(first, end) for stretches of the balls that make up all, and test(first, end) for stretches
+  /// of the pairs that make up all, each after its balls were moved.
+  ///
+  /// The trick: pairs are tested right after the later of their balls was moved. It is near then, and so is
+  /// the earlier one, as a rule: the memory is read once where it would be read for moving and again for
+  /// testing.
+  template <class Move, class Test>
+  void sweep(const Move& move, const Test& test) const {
+    std::size_t tested = 0;
+    for (std::size_t k = 0; k < end_of_pairs_.size(); ++k) {
+      move(k * kStretch, std::min((k + 1) * kStretch, bound_.size()));
+      test(tested, end_of_pairs_[k]);
+      tested = end_of_pairs_[k];
+    }
+    if (end_of_pairs_.empty()) move(0, bound_.size());
+    test(tested, pairs_.size());
+  }
+
   /// Two balls that may touch.
   std::span<const BallPair> pairs() const { return pairs_; }
   /// A ball and a plane that may touch.
@@ -180,6 +199,9 @@ class PairList {
   /// more often.
   static constexpr std::size_t kFewIsOneIn = 50;
   static constexpr std::size_t kSample = 1024;
+  /// Balls that are moved before their pairs are tested: what they take is a part of the nearest caches.
+  static constexpr std::size_t kStretch = 4096;
+  static constexpr std::size_t kManyStretches = 8;
   /// Lists after which balls have left the order in which they were sorted.
   static constexpr int kBuildsInAnOrder = 16;
   /// For sums of ways, those of floats included: each addition is off by 2⁻²⁴ at most.
@@ -210,6 +232,7 @@ class PairList {
     });
     broad_phase_->build(world.position, bound_, threads_);
     broad_phase_->find_pairs(pairs_, threads_);
+    sort_pairs(world.size());
   }
 
   /// For the next list: half the skin that would have added kMorePairs for each ball to the pairs that touch,
@@ -260,6 +283,20 @@ class PairList {
     }
   }
 
+  /// Puts pairs in the order of the stretches that their later balls stand in. Few balls are near anyway;
+  /// then all is left as it is.
+  void sort_pairs(std::size_t balls) {
+    end_of_pairs_.clear();
+    if (balls < kManyStretches * kStretch) return;
+    const auto stretch_of = [](const BallPair& pair) { return pair.second / kStretch; };
+    end_of_pairs_.resize((balls - 1) / kStretch + 1, 0);
+    for (const BallPair& pair : pairs_) ++end_of_pairs_[stretch_of(pair)];
+    std::exclusive_scan(end_of_pairs_.begin(), end_of_pairs_.end(), end_of_pairs_.begin(), 0U);
+    Column<BallPair> sorted(pairs_.size());
+    for (const BallPair& pair : pairs_) sorted[end_of_pairs_[stretch_of(pair)]++] = pair;
+    pairs_.swap(sorted);
+  }
+
   void find_planes(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
     besides_.clear();
     for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
@@ -308,6 +345,8 @@ class PairList {
   Column<float> jumps_m_;  ///< of each ball; empty before the first
   Column<double> bound_;   ///< m, radius and how far the ball may get from where it was
   Column<BallPair> pairs_;
+  std::vector<std::uint32_t>
+      end_of_pairs_;  ///< of each stretch, its end in pairs_; empty where balls are few
   std::vector<BallPair> besides_;
   std::vector<std::uint32_t> fast_;
   std::vector<std::uint32_t> near_;

@@ -61,7 +61,7 @@ class StepEvolver final : public Simulation {
 
   void advance(double step_s, std::int64_t steps) override {
     for (std::int64_t k = 0; k < steps; ++k) {
-      move(step_s);
+      begin_step(step_s);
       find_contacts();
       resolve_impacts();
       separate();
@@ -93,7 +93,8 @@ class StepEvolver final : public Simulation {
     bool plane;
   };
 
-  void move(double step_s) {
+  void begin_step(double step_s) {
+    step_s_ = step_s;
     field_speed_ = 0.0;
     if constexpr (Traits::kAccelerates) {
       threads_.in_parallel(world_.size(), [&](std::size_t begin, std::size_t end) {
@@ -105,26 +106,29 @@ class StepEvolver final : public Simulation {
       field_speed_ = step_s * largest_norm(acceleration_, threads_);
       fastest_ = largest_norm(world_.velocity, threads_);
     }
-    threads_.in_parallel(world_.size(), [&](std::size_t begin, std::size_t end) {
-      for (int axis = 0; axis < kDim; ++axis) {
-        const std::span<double> x = world_.position.axis(axis);
-        const std::span<const double> v = std::as_const(world_.velocity).axis(axis);
-        for (std::size_t i = begin; i < end; ++i) x[i] += step_s * v[i];
-      }
-    });
     near_.travelled(step_s * (Traits::kAccelerates ? fastest_ : near_.cruise_mps()));
   }
 
+  void move(std::size_t begin, std::size_t end) {
+    for (int axis = 0; axis < kDim; ++axis) {
+      const std::span<double> x = world_.position.axis(axis);
+      const std::span<const double> v = std::as_const(world_.velocity).axis(axis);
+      for (std::size_t i = begin; i < end; ++i) x[i] += step_s_ * v[i];
+    }
+  }
+
   void find_contacts() {
-    if (!near_.holds()) look_around();
     touches_.clear();
-    const std::span<const BallPair> pairs = near_.pairs();
-    threads_.collect(
-        pairs.size(), touches_, [&](std::size_t begin, std::size_t end, std::vector<Touch>& found) {
-          for_each_passing(
-              begin, end, [&](std::size_t k) { return overlap(pairs[k].first, pairs[k].second); },
-              [&](std::size_t k) { touch(pairs[k].first, pairs[k].second, found); });
-        });
+    if (near_.holds() && threads_.count() == 1) {
+      near_.sweep([this](std::size_t begin, std::size_t end) { move(begin, end); },
+                  [this](std::size_t begin, std::size_t end) { test(begin, end, touches_); });
+    } else {
+      threads_.in_parallel(world_.size(), [this](std::size_t begin, std::size_t end) { move(begin, end); });
+      if (!near_.holds()) look_around();
+      threads_.collect(
+          near_.pairs().size(), touches_,
+          [this](std::size_t begin, std::size_t end, std::vector<Touch>& found) { test(begin, end, found); });
+    }
     for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
     // The list is in an order of its own; the order of the contacts decides what happens.
     std::sort(touches_.begin(), touches_.end(),
@@ -132,6 +136,14 @@ class StepEvolver final : public Simulation {
     const auto twice = std::unique(touches_.begin(), touches_.end(),
                                    [this](const Touch& x, const Touch& y) { return rank(x) == rank(y); });
     touches_.erase(twice, touches_.end());
+  }
+
+  /// Finds the contacts among a stretch of the listed pairs.
+  void test(std::size_t begin, std::size_t end, std::vector<Touch>& found) const {
+    const std::span<const BallPair> pairs = near_.pairs();
+    for_each_passing(
+        begin, end, [&](std::size_t k) { return overlap(pairs[k].first, pairs[k].second); },
+        [&](std::size_t k) { touch(pairs[k].first, pairs[k].second, found); });
   }
 
   void look_around() {
@@ -358,6 +370,7 @@ class StepEvolver final : public Simulation {
   Contact wall_surface_;
   Place gravity_;  ///< m/s²
   VectorColumn<kDim> acceleration_;
+  double step_s_ = 0.0;
   double field_speed_ = 0.0;  ///< m/s, what the strongest acceleration gives in a step
   double fastest_ = 0.0;      ///< m/s, no ball is faster; where fields act
   Account<kDim> account_;
