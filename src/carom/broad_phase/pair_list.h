@@ -71,10 +71,12 @@ class PairList {
     farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
   }
 
+  bool is_out_of_order() const { return builds_in_this_order_ >= kBuildsInAnOrder; }
+
   /// Before the first build(), and now and then later: sorts the balls in memory, so that those that are
   /// looked at together are loaded together. Returns whether it did; then the list holds no more.
   bool sort(World<Dim>& world) {
-    if (builds_in_this_order_ < kBuildsInAnOrder || world.size() == 0) return false;
+    if (!is_out_of_order() || world.size() == 0) return false;
     if (bound_.empty()) find_first_skin(world);
     builds_in_this_order_ = 0;
     Column<std::uint32_t> order;

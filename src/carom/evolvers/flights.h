@@ -19,7 +19,7 @@ namespace carom {
 ///
 /// Few balls are hit in a step. These are touched one by one, and a record is kept of each; all fly
 /// from the step's start to its end together, in loops over plain arrays, and those with a record are put
-/// back.
+/// back. Nobody asks where they are until the next step, so that they land as it goes from ball to ball.
 ///
 /// @tparam kAccelerates  false: no acceleration is stored, added, or even zero
 /// @tparam kFriction     whether pushes can turn the balls
@@ -75,21 +75,38 @@ class Flights {
     }
   }
 
+  /// Ends the step: whoever was touched arrives. All are in the air then until they land(), which has time
+  /// until somebody asks where they are.
   void finish_step() {
     // In the order of their numbers: what bears them is added up.
     std::sort(records_.begin(), records_.end(),
               [this](const Record& a, const Record& b) { return world_.before(a.ball, b.ball); });
-    for (Record& record : records_) {
-      fly_to(record.ball, step_s_);
-      record.arrival = motion(record.ball);
-    }
-    threads_.in_parallel(size(), [&](std::size_t begin, std::size_t end) { fly_whole_step(begin, end); });
+    arrivals_.clear();
     for (const Record& record : records_) {
-      world_.position.set(record.ball, record.arrival.x);
-      if constexpr (kAccelerates) world_.velocity.set(record.ball, record.arrival.v);
+      fly_to(record.ball, step_s_);
+      arrivals_.push_back({record.ball, world_.position[record.ball], world_.velocity[record.ball]});
       forget(record.ball);
     }
     records_.clear();
+    std::sort(arrivals_.begin(), arrivals_.end(),
+              [](const Arrival& a, const Arrival& b) { return a.ball < b.ball; });
+    arrived_ = 0;
+    in_the_air_s_ = step_s_;
+    if constexpr (kAccelerates) land();
+  }
+
+  /// Brings all balls to the end of the last step, if they are not there.
+  void land() {
+    if (in_the_air_s_ == 0.0) return;
+    threads_.in_parallel(size(), [this](std::size_t begin, std::size_t end) { fly_whole_step(begin, end); });
+    put_back_before(size());
+  }
+
+  /// The same for balls from one up to, but without, another. @pre stretch by stretch, from the first ball on
+  void land(std::size_t begin, std::size_t end) {
+    if (in_the_air_s_ == 0.0) return;
+    fly_whole_step(begin, end);
+    put_back_before(end);
   }
 
   /// How far a ball gets in this step at most, m, where fields act.
@@ -186,7 +203,13 @@ class Flights {
   struct Record {
     std::uint32_t ball;
     Reach<Dim> reach;
-    Motion<Dim> arrival;  ///< at the end of the step
+  };
+
+  /// Where a ball that was touched is at the end of the step.
+  struct Arrival {
+    std::uint32_t ball;
+    Vec<Dim> x;
+    Vec<Dim> v;
   };
 
   static constexpr std::uint32_t kUntouched = std::numeric_limits<std::uint32_t>::max();
@@ -196,7 +219,7 @@ class Flights {
     if (touched_[ball] == kUntouched) {
       const Reach<Dim> from_here = reach(ball);
       touched_[ball] = static_cast<std::uint32_t>(records_.size());
-      records_.push_back({static_cast<std::uint32_t>(ball), from_here, motion(ball)});
+      records_.push_back({static_cast<std::uint32_t>(ball), from_here});
     }
     return records_[touched_[ball]];
   }
@@ -224,13 +247,22 @@ class Flights {
       if constexpr (kAccelerates) {
         const std::span<const double> a = std::as_const(acceleration_).axis(axis);
         for (std::size_t i = begin; i < end; ++i) {
-          x[i] += step_s_ * (v[i] + (0.5 * step_s_) * a[i]);
-          v[i] += step_s_ * a[i];
+          x[i] += in_the_air_s_ * (v[i] + (0.5 * in_the_air_s_) * a[i]);
+          v[i] += in_the_air_s_ * a[i];
         }
       } else {
-        for (std::size_t i = begin; i < end; ++i) x[i] += step_s_ * v[i];
+        for (std::size_t i = begin; i < end; ++i) x[i] += in_the_air_s_ * v[i];
       }
     }
+  }
+
+  void put_back_before(std::size_t end) {
+    for (; arrived_ < arrivals_.size() && arrivals_[arrived_].ball < end; ++arrived_) {
+      const Arrival& arrival = arrivals_[arrived_];
+      world_.position.set(arrival.ball, arrival.x);
+      if constexpr (kAccelerates) world_.velocity.set(arrival.ball, arrival.v);
+    }
+    if (end == size()) in_the_air_s_ = 0.0;
   }
 
   void still(std::size_t ball) {
@@ -268,6 +300,9 @@ class Flights {
   Column<std::uint32_t> stamp_;
   Column<std::uint32_t> touched_;  ///< of each ball, which of the records is its
   std::vector<Record> records_;
+  std::vector<Arrival> arrivals_;
+  std::size_t arrived_ = 0;    ///< of them, how many have landed
+  double in_the_air_s_ = 0.0;  ///< how long the balls have flown without being moved
   VectorColumn<Dim> acceleration_;
   VectorColumn<Dim> force_;  ///< N, by the walls and immovable balls that bear the ball
   VectorColumn<kSpinAxes<Dim>> spin_acceleration_;

@@ -27,11 +27,16 @@ class Neighbours {
       : flights_(flights), planes_(planes), list_(std::move(broad_phase), skin, threads) {}
 
   /// Between steps: sorts the balls in memory now and then.
-  void sort() { list_.sort(flights_.world()); }
+  void sort() {
+    if (!list_.is_out_of_order()) return;
+    flights_.land();
+    list_.sort(flights_.world());
+  }
 
   /// @pre the flights of the step have begun
   void begin_step() {
     if (list_.holds(longest_path())) return;
+    flights_.land();
     if constexpr (!Balls::kFieldsAct) list_.measure_speeds(world());
     const bool lasts = list_.may_last(longest_path());
     list_.build(world(), planes_,
@@ -47,6 +52,12 @@ class Neighbours {
 
   /// A ball was put this far away, m.
   void jumped(std::size_t ball, double way_m) { list_.jumped(ball, way_m); }
+
+  /// All balls land, and test(first, end) gets the pairs, stretch by stretch, as in PairList::sweep().
+  template <class Test>
+  void land_and_test(const Test& test) {
+    list_.sweep([this](std::size_t begin, std::size_t end) { flights_.land(begin, end); }, test);
+  }
 
   /// Two balls that may meet in this step, or in a later one.
   std::span<const BallPair> pairs() const { return list_.pairs(); }

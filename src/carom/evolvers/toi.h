@@ -58,6 +58,7 @@ class ToiEvolver final : public Simulation {
 
   void advance(double step_s, std::int64_t steps) override {
     for (std::int64_t k = 0; k < steps; ++k) step(step_s);
+    flights_.land();
   }
 
   void snapshot(std::span<BallState> balls) const override { world().snapshot(balls); }
@@ -139,22 +140,33 @@ class ToiEvolver final : public Simulation {
   }
 
   void find_meetings() {
-    const std::span<const BallPair> pairs = neighbours_.pairs();
-    const double fall_m = flights_.step_s() * flights_.field_speed();
     coming_near_.clear();
-    threads_.collect(
-        pairs.size(), coming_near_, [&](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
-          for_each_passing(
-              begin, end, [&](std::size_t k) { return come_near(pairs[k].first, pairs[k].second, fall_m); },
-              [&](std::size_t k) {
-                if (neighbours_.may_meet_in_step(pairs[k].first, pairs[k].second)) found.push_back(pairs[k]);
-              });
-        });
+    if (threads_.count() == 1) {
+      neighbours_.land_and_test(
+          [this](std::size_t begin, std::size_t end) { find_near(begin, end, coming_near_); });
+    } else {
+      flights_.land();
+      threads_.collect(neighbours_.pairs().size(), coming_near_,
+                       [this](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
+                         find_near(begin, end, found);
+                       });
+    }
     for (const auto& [a, b] : coming_near_) expect_pair(a, b);
     for (const auto& [ball, plane] : neighbours_.besides()) {
       const double reach_m = flights_.reach(ball).bound;
       if (planes_[plane].gap(world().position[ball], reach_m) <= 0.0) expect_plane(ball, plane);
     }
+  }
+
+  /// Of a stretch of the listed pairs, those that may meet in the step.
+  void find_near(std::size_t begin, std::size_t end, std::vector<BallPair>& found) const {
+    const std::span<const BallPair> pairs = neighbours_.pairs();
+    const double fall_m = flights_.step_s() * flights_.field_speed();
+    for_each_passing(
+        begin, end, [&](std::size_t k) { return come_near(pairs[k].first, pairs[k].second, fall_m); },
+        [&](std::size_t k) {
+          if (neighbours_.may_meet_in_step(pairs[k].first, pairs[k].second)) found.push_back(pairs[k]);
+        });
   }
 
   /// A cheap question that leaves few pairs to the exact one: may these touch in the step, both flying as
