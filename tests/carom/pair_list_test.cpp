@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -118,6 +119,29 @@ TEST_P(PairListTwin, SameBits_AsPairsFoundAnewInEveryStep_ManyBallsAndSomeFast) 
                                        : "octree",
                       PairSkin::kChosen},
                      {evolver, "uniform-grid", PairSkin::kNone}, 24 / kPart);
+  }
+}
+
+/// In a step that is as long as many flights a ball that is hit turns round, and is hit again where it began:
+/// from there it meets whom it meets in short steps, though nobody was near the place of its first impact.
+TEST(PairList, FindsWhomABallMeets_ThatIsHitAgainAndAgainInAStep) {
+  const auto ball = [](double x, double y, double v_x, double v_y) {
+    return fmt::format("[[ball]]\nposition = [{}, {}]\nvelocity = [{}, {}]\nradius = 0.1\nmass = 1.0\n", x, y,
+                       v_x, v_y);
+  };
+  // The first goes right, is hit by the second at 0.5 s and turns, is hit by the third at 0.75 s where it
+  // began, and flies 5.9 m/s fast at the fourth, which it touches 1.1 m farther on.
+  const ScenarioPtr scene =
+      scene_of("title = \"hit again\"\ndimension = 2\nduration = 1.0\nstep = 1.0\nframes = 1\n" +
+               ball(0.0, 0.0, 1.0, 0.0) + ball(1.7, 0.0, -2.0, 0.0) + ball(3.164, 3.164, -4.03, -4.03) +
+               ball(-1.114, -0.671, 0.0, 0.0));
+  for (const PairSkin skin : {PairSkin::kChosen, PairSkin::kNone}) {
+    const auto at_once = compose(*scene, {"toi", "wrapped-grid", skin});
+    const auto in_short_steps = compose(*scene, {"toi", "brute-force", PairSkin::kNone});
+    at_once->advance(1.0, 1);
+    in_short_steps->advance(1.0 / 512.0, 512);
+    EXPECT_EQ(in_short_steps->tally().impacts, 3);
+    EXPECT_EQ(at_once->tally().impacts, 3);
   }
 }
 

@@ -44,7 +44,7 @@ class BroadPhase {
   virtual void bound_grew(std::size_t ball) = 0;
 
   /// Replaces `others` by every ball that may meet something with this reach, from where it stood at build()
-  /// and by its bound as it is; others may be among them.
+  /// and by its bound as it is; others may be among them, and the one that asks.
   virtual void find_near(const Reach<Dim>& reach, std::vector<std::uint32_t>& others) const = 0;
 
   /// Replaces `balls` by all balls in an order in which neighbours stand together; by none where the broad

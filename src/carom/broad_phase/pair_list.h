@@ -71,20 +71,20 @@ class PairList {
     farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
   }
 
+  /// Whether balls have left the order in which they were sorted, or never were.
   bool is_out_of_order() const { return builds_in_this_order_ >= kBuildsInAnOrder; }
 
-  /// Before the first build(), and now and then later: sorts the balls in memory, so that those that are
-  /// looked at together are loaded together. Returns whether it did; then the list holds no more.
-  bool sort(World<Dim>& world) {
-    if (!is_out_of_order() || world.size() == 0) return false;
+  /// Before build(): sorts the balls in memory if they are out of order, so that those that are looked at
+  /// together are loaded together. The list holds no more then.
+  void sort(World<Dim>& world) {
+    if (!is_out_of_order() || world.size() == 0) return;
     if (bound_.empty()) find_first_skin(world);
     builds_in_this_order_ = 0;
     Column<std::uint32_t> order;
     broad_phase_->hand_over_order(order);
-    if (order.empty()) return false;
+    if (order.empty()) return;
     world.reorder(order, threads_);
     enough_m_ = kNothingHolds;
-    return true;
   }
 
   /// Before build(), where balls keep their speeds between impacts: chooses the cruising speed.
@@ -144,35 +144,40 @@ class PairList {
     if (haste.times > kMostTimes) enough_m_ = kNothingHolds;
     const double left_m = std::max(0.0, half_skin_m_ - travelled_m_ - haste.cruisers_way_m);
     const double later_m = enough_m_ == kNothingHolds ? 0.0 : haste.times * left_m;
-    const double ahead_m = (haste.way_m + later_m) * kRoundUp + 2.0 * rounding_m_;
-    const double bound = world.radius[ball] + (gone(world, ball) + ahead_m) * kRoundUp;
+    const double soon_m = gone(world, ball) + haste.way_m;
+    const double bound = world.radius[ball] + (soon_m + later_m) * kRoundUp + 2.0 * rounding_m_;
     if (!(bound > bound_[ball])) return;
     bound_[ball] = bound;
     broad_phase_->bound_grew(ball);
-    add_pairs(world, ball, ahead_m, is_new);
+    // Bounds are around where balls were when the list was made: this far away at most.
+    const Reach<Dim> reach{world.position[ball], bound + soon_m};
+    add_pairs(world, ball, reach, is_new);
     for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
-      if (planes[plane].gap(world.position[ball], world.radius[ball] + ahead_m) > 0.0) continue;
+      if (planes[plane].gap(reach.centre, reach.bound) > 0.0) continue;
       besides_.emplace_back(static_cast<std::uint32_t>(ball), plane);
     }
     if (++hurried_ > few(world)) enough_m_ = kNothingHolds;
   }
 
-  /// Calls move(first, end) for stretches of the balls that make up all, and test(first, end) for stretches
-  /// of the pairs that make up all, each after its balls were moved.
+  /// Calls move(first, end) for stretches of the balls that make up all, and test(first, end, found) for
+  /// stretches of the pairs that make up all, each after its balls were moved.
   ///
   /// The trick: pairs are tested right after the later of their balls was moved. It is near then, and so is
   /// the earlier one, as a rule: the memory is read once where it would be read for moving and again for
-  /// testing.
-  template <class Move, class Test>
-  void sweep(const Move& move, const Test& test) const {
+  /// testing. Threads that share the balls move all of them first.
+  template <class Move, class Found, class Test>
+  void sweep(const Move& move, Found& found, const Test& test) const {
+    if (threads_.count() > 1 || end_of_pairs_.empty()) {
+      threads_.in_parallel(bound_.size(), move);
+      return threads_.collect(pairs_.size(), found, test);
+    }
     std::size_t tested = 0;
     for (std::size_t k = 0; k < end_of_pairs_.size(); ++k) {
       move(k * kStretch, std::min((k + 1) * kStretch, bound_.size()));
-      test(tested, end_of_pairs_[k]);
+      test(tested, end_of_pairs_[k], found);
       tested = end_of_pairs_[k];
     }
-    if (end_of_pairs_.empty()) move(0, bound_.size());
-    test(tested, pairs_.size());
+    test(tested, pairs_.size(), found);
   }
 
   /// Two balls that may touch.
@@ -181,7 +186,6 @@ class PairList {
   std::span<const BallPair> besides() const { return besides_; }
 
   std::string_view name() const { return broad_phase_->name(); }
-  const BroadPhase<Dim>& broad_phase() const { return *broad_phase_; }
 
  private:
   /// Pairs that the skin adds for each ball: more of them make every step dearer, fewer make lists shorter
@@ -271,15 +275,14 @@ class PairList {
     return over * (bound_[ball] - world.radius[ball]) + jump_m;
   }
 
-  /// The pairs of a ball that goes this far, m, from where it is.
+  /// The pairs of a ball with all others whose bounds come into this reach.
   template <class IsNew>
-  void add_pairs(const World<Dim>& world, std::size_t ball, double ahead_m, const IsNew& is_new) {
-    const Reach<Dim> reach{world.position[ball], world.radius[ball] + ahead_m};
+  void add_pairs(const World<Dim>& world, std::size_t ball, const Reach<Dim>& reach, const IsNew& is_new) {
     broad_phase_->find_near(reach, near_);
     for (const std::uint32_t other : near_) {
-      // Where the other is now, it goes no farther than in all of the list's life.
-      if (other == ball || !may_meet(reach, {world.position[other], bound_[other]}) || !is_new(other))
-        continue;
+      if (other == ball) continue;
+      const double allowed_m = bound_[other] - world.radius[other];  // and no farther from where it was
+      if (!may_meet(reach, {world.position[other], bound_[other] + allowed_m}) || !is_new(other)) continue;
       const auto self = static_cast<std::uint32_t>(ball);
       pairs_.emplace_back(std::min(self, other), std::max(self, other));
     }
@@ -347,8 +350,7 @@ class PairList {
   Column<float> jumps_m_;  ///< of each ball; empty before the first
   Column<double> bound_;   ///< m, radius and how far the ball may get from where it was
   Column<BallPair> pairs_;
-  std::vector<std::uint32_t>
-      end_of_pairs_;  ///< of each stretch, its end in pairs_; empty where balls are few
+  std::vector<std::uint32_t> end_of_pairs_;  ///< of each stretch, in pairs_; empty where balls are few
   std::vector<BallPair> besides_;
   std::vector<std::uint32_t> fast_;
   std::vector<std::uint32_t> near_;

@@ -4,8 +4,8 @@
 
 namespace carom {
 
-/// Where a ball can be within a step: no farther than `bound` metres from `centre`, where it stood when the
-/// step began.
+/// Where a ball can be within a step, or while a list of pairs lives: no farther than `bound` metres from
+/// `centre`.
 template <int Dim>
 struct Reach {
   Vec<Dim> centre;

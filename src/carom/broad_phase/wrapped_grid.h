@@ -71,7 +71,7 @@ class WrappedGrid {
   template <class Visit>
   void for_each_near(const Reach<Dim>& reach, Visit&& visit) const {
     // Along an axis cells differ by at most the whole part of the distance, in cells, and one.
-    const double away = std::min((reach.bound + largest_bound_) * cells_per_m_ + kRounding, 0x1p29);
+    const double away = std::min(0x1p29, (reach.bound + largest_bound_) * cells_per_m_ + kRounding);
     const std::int32_t around = static_cast<std::int32_t>(away) + 1;
     std::array<std::int32_t, 3> first{};
     std::array<std::int32_t, 3> count = {1, 1, 1};

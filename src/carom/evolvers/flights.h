@@ -26,8 +26,8 @@ namespace carom {
 template <int Dim, bool kAccelerates, bool kFriction>
 class Flights {
  public:
-  /// Whether a push that lasts turns balls: then spins change in flight.
   static constexpr bool kFieldsAct = kAccelerates;
+  /// Whether a push that lasts turns balls: then spins change in flight.
   static constexpr bool kTurning = kAccelerates && kFriction;
 
   Flights(const Scenario& scene, std::unique_ptr<Flight<Dim>> model, const Threads& threads)
@@ -76,7 +76,7 @@ class Flights {
   }
 
   /// Ends the step: whoever was touched arrives. All are in the air then until they land(), which has time
-  /// until somebody asks where they are.
+  /// until somebody asks where they are; where fields act the next step does so at once.
   void finish_step() {
     // In the order of their numbers: what bears them is added up.
     std::sort(records_.begin(), records_.end(),
@@ -88,26 +88,30 @@ class Flights {
       forget(record.ball);
     }
     records_.clear();
-    std::sort(arrivals_.begin(), arrivals_.end(),
-              [](const Arrival& a, const Arrival& b) { return a.ball < b.ball; });
-    arrived_ = 0;
+    std::sort(arrivals_.begin(), arrivals_.end(), before_in_memory);
     in_the_air_s_ = step_s_;
     if constexpr (kAccelerates) land();
   }
 
   /// Brings all balls to the end of the last step, if they are not there.
   void land() {
-    if (in_the_air_s_ == 0.0) return;
-    threads_.in_parallel(size(), [this](std::size_t begin, std::size_t end) { fly_whole_step(begin, end); });
-    put_back_before(size());
+    threads_.in_parallel(size(), [this](std::size_t begin, std::size_t end) { land(begin, end); });
+    all_have_landed();
   }
 
-  /// The same for balls from one up to, but without, another. @pre stretch by stretch, from the first ball on
+  /// The same for balls from one up to, but without, another. @pre not all_have_landed() since
   void land(std::size_t begin, std::size_t end) {
     if (in_the_air_s_ == 0.0) return;
     fly_whole_step(begin, end);
-    put_back_before(end);
+    const Arrival first{static_cast<std::uint32_t>(begin), {}, {}};
+    for (auto arrival = std::lower_bound(arrivals_.begin(), arrivals_.end(), first, before_in_memory);
+         arrival != arrivals_.end() && arrival->ball < end; ++arrival) {
+      world_.position.set(arrival->ball, arrival->x);
+      if constexpr (kAccelerates) world_.velocity.set(arrival->ball, arrival->v);
+    }
   }
+
+  void all_have_landed() { in_the_air_s_ = 0.0; }
 
   /// How far a ball gets in this step at most, m, where fields act.
   double longest_path() const requires kAccelerates { return (fastest_ + 0.5 * field_speed_) * step_s_; }
@@ -256,14 +260,7 @@ class Flights {
     }
   }
 
-  void put_back_before(std::size_t end) {
-    for (; arrived_ < arrivals_.size() && arrivals_[arrived_].ball < end; ++arrived_) {
-      const Arrival& arrival = arrivals_[arrived_];
-      world_.position.set(arrival.ball, arrival.x);
-      if constexpr (kAccelerates) world_.velocity.set(arrival.ball, arrival.v);
-    }
-    if (end == size()) in_the_air_s_ = 0.0;
-  }
+  static bool before_in_memory(const Arrival& a, const Arrival& b) { return a.ball < b.ball; }
 
   void still(std::size_t ball) {
     spin_acceleration_.set(ball, Spin<Dim>::Zero());
@@ -301,7 +298,6 @@ class Flights {
   Column<std::uint32_t> touched_;  ///< of each ball, which of the records is its
   std::vector<Record> records_;
   std::vector<Arrival> arrivals_;
-  std::size_t arrived_ = 0;    ///< of them, how many have landed
   double in_the_air_s_ = 0.0;  ///< how long the balls have flown without being moved
   VectorColumn<Dim> acceleration_;
   VectorColumn<Dim> force_;  ///< N, by the walls and immovable balls that bear the ball

@@ -44,19 +44,19 @@ class Neighbours {
     last_of_.assign(world().size(), kNone);
     before_.clear();
     chain_new_pairs();
-    for (const std::uint32_t ball : list_.fast()) hurry(ball, {0.0, 0.0, list_.times_cruise(world(), ball)});
+    for (const std::uint32_t ball : list_.fast()) hurry(ball, flights_.path_bound(ball, flights_.step_s()));
   }
 
-  /// @pre the balls are where the step has brought them
   void end_step() { list_.travelled(longest_path()); }
 
   /// A ball was put this far away, m.
   void jumped(std::size_t ball, double way_m) { list_.jumped(ball, way_m); }
 
-  /// All balls land, and test(first, end) gets the pairs, stretch by stretch, as in PairList::sweep().
-  template <class Test>
-  void land_and_test(const Test& test) {
-    list_.sweep([this](std::size_t begin, std::size_t end) { flights_.land(begin, end); }, test);
+  /// All balls land, and test(first, end, found) gets the pairs, stretch by stretch.
+  template <class Found, class Test>
+  void land_and_test(Found& found, const Test& test) {
+    list_.sweep([this](std::size_t begin, std::size_t end) { flights_.land(begin, end); }, found, test);
+    flights_.all_have_landed();
   }
 
   /// Two balls that may meet in this step, or in a later one.
@@ -80,9 +80,12 @@ class Neighbours {
   /// before.
   bool widen(std::size_t ball) {
     const bool farther = flights_.widen_reach(ball);
-    double times = 1.0;
-    if constexpr (!Balls::kFieldsAct) times = list_.times_cruise(world(), ball);
-    hurry(ball, {flights_.way_in_step(ball), longest_path(), times});
+    const double way_m = flights_.way_in_step(ball);
+    if constexpr (Balls::kFieldsAct) {
+      // What presses it may be stronger than the fields.
+      if (way_m > longest_path()) list_.jumped(ball, way_m - longest_path());
+    }
+    hurry(ball, way_m);
     return farther;
   }
 
@@ -99,8 +102,11 @@ class Neighbours {
     return list_.cruise_mps() * flights_.step_s();
   }
 
-  void hurry(std::size_t ball, const typename PairList<Dim>::Haste& haste) {
-    list_.hurry(world(), planes_, ball, haste, [&](std::uint32_t other) { return !is_listed(ball, other); });
+  /// @param way_m  how far from where it began the step the ball may get in it
+  void hurry(std::size_t ball, double way_m) {
+    const double times = Balls::kFieldsAct ? 1.0 : list_.times_cruise(world(), ball);
+    list_.hurry(world(), planes_, ball, {.way_m = way_m, .cruisers_way_m = longest_path(), .times = times},
+                [&](std::uint32_t other) { return !is_listed(ball, other); });
     chain_new_pairs();
   }
 

@@ -119,15 +119,16 @@ class StepEvolver final : public Simulation {
 
   void find_contacts() {
     touches_.clear();
-    if (near_.holds() && threads_.count() == 1) {
-      near_.sweep([this](std::size_t begin, std::size_t end) { move(begin, end); },
-                  [this](std::size_t begin, std::size_t end) { test(begin, end, touches_); });
+    const auto move = [this](std::size_t begin, std::size_t end) { this->move(begin, end); };
+    const auto test = [this](std::size_t begin, std::size_t end, std::vector<Touch>& found) {
+      this->test(begin, end, found);
+    };
+    if (near_.holds()) {
+      near_.sweep(move, touches_, test);
     } else {
-      threads_.in_parallel(world_.size(), [this](std::size_t begin, std::size_t end) { move(begin, end); });
-      if (!near_.holds()) look_around();
-      threads_.collect(
-          near_.pairs().size(), touches_,
-          [this](std::size_t begin, std::size_t end, std::vector<Touch>& found) { test(begin, end, found); });
+      threads_.in_parallel(world_.size(), move);
+      look_around();
+      threads_.collect(near_.pairs().size(), touches_, test);
     }
     for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
     // The list is in an order of its own; the order of the contacts decides what happens.
@@ -246,7 +247,8 @@ class StepEvolver final : public Simulation {
 
   void hurry(std::uint32_t ball) {
     const auto any = [](std::uint32_t) { return true; };
-    near_.hurry(world_, planes_, ball, {0.0, 0.0, near_.times_cruise(world_, ball)}, any);
+    near_.hurry(world_, planes_, ball,
+                {.way_m = 0.0, .cruisers_way_m = 0.0, .times = near_.times_cruise(world_, ball)}, any);
   }
 
   /// Rest has no rebound.

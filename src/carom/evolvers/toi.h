@@ -141,16 +141,10 @@ class ToiEvolver final : public Simulation {
 
   void find_meetings() {
     coming_near_.clear();
-    if (threads_.count() == 1) {
-      neighbours_.land_and_test(
-          [this](std::size_t begin, std::size_t end) { find_near(begin, end, coming_near_); });
-    } else {
-      flights_.land();
-      threads_.collect(neighbours_.pairs().size(), coming_near_,
-                       [this](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
-                         find_near(begin, end, found);
-                       });
-    }
+    neighbours_.land_and_test(coming_near_,
+                              [this](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
+                                find_coming_near(begin, end, found);
+                              });
     for (const auto& [a, b] : coming_near_) expect_pair(a, b);
     for (const auto& [ball, plane] : neighbours_.besides()) {
       const double reach_m = flights_.reach(ball).bound;
@@ -159,7 +153,7 @@ class ToiEvolver final : public Simulation {
   }
 
   /// Of a stretch of the listed pairs, those that may meet in the step.
-  void find_near(std::size_t begin, std::size_t end, std::vector<BallPair>& found) const {
+  void find_coming_near(std::size_t begin, std::size_t end, std::vector<BallPair>& found) const {
     const std::span<const BallPair> pairs = neighbours_.pairs();
     const double fall_m = flights_.step_s() * flights_.field_speed();
     for_each_passing(
