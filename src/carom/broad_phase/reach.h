@@ -51,11 +51,11 @@ struct ReachBox {
 
   /// Without a branch for each side: which one keeps boxes apart no processor can foresee.
   bool touches(const ReachBox& other) const {
-    bool touch = true;
+    unsigned touch = 1;
     for (int axis = 0; axis < Dim; ++axis) {
-      touch &= (low[axis] <= other.high[axis]) & (other.low[axis] <= high[axis]);
+      touch &= unsigned{low[axis] <= other.high[axis]} & unsigned{other.low[axis] <= high[axis]};
     }
-    return touch;
+    return touch != 0;
   }
 };
 
