@@ -15,9 +15,10 @@ namespace carom {
 /// Two balls that may meet, the lower number first.
 using BallPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// A broad phase finds the pairs of balls that may meet within a step: ball i stays within bound[i] of where
-/// it stood when the step began, so i and j may meet only if |x_i - x_j| <= bound[i] + bound[j]. Every broad
-/// phase reports exactly these pairs, in an order of its own; what follows does not depend on the order.
+/// A broad phase finds the pairs of balls that may meet for a while, a step or the life of a list of pairs:
+/// ball i stays within bound[i], m, of where it stood at build(), so i and j may meet only if |x_i - x_j| <=
+/// bound[i] + bound[j]. Every broad phase reports exactly these pairs, in an order of its own; what follows
+/// does not depend on the order.
 ///
 /// This is how an evolver sees it: one call for a list of pairs, and one for each ball that gets farther than
 /// the list allows for. Inside, each is a template that visits pairs without calls. One whose build() takes

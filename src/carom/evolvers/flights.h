@@ -99,7 +99,7 @@ class Flights {
     all_have_landed();
   }
 
-  /// The same for balls from one up to, but without, another. @pre not all_have_landed() since
+  /// The same for balls from one up to, but without, another: each once, and then all_have_landed().
   void land(std::size_t begin, std::size_t end) {
     if (in_the_air_s_ == 0.0) return;
     fly_whole_step(begin, end);
