@@ -4,20 +4,11 @@
 #include <cstdint>
 #include <span>
 
+#include "carom/permute.h"
 #include "carom/threads.h"
 #include "core/large_pages.h"
 
 namespace carom {
-
-/// Place k takes what stood at order[k]. @param spare  for use meanwhile
-inline void reorder(Column<double>& column, std::span<const std::uint32_t> order, Column<double>& spare,
-                    const Threads& threads) {
-  spare.resize(order.size());
-  threads.in_parallel(order.size(), [&](std::size_t first, std::size_t end) {
-    for (std::size_t k = first; k < end; ++k) spare[k] = column[order[k]];
-  });
-  column.swap(spare);
-}
 
 /// One number of each ball, which is held once where it is the same of all.
 ///
@@ -41,9 +32,9 @@ class SharedColumn {
     values_[ball] = value;
   }
 
-  /// Place k takes what stood at order[k]. @param spare  for use meanwhile
-  void reorder(std::span<const std::uint32_t> order, Column<double>& spare, const Threads& threads) {
-    if (mask_ == kEach) carom::reorder(values_, order, spare, threads);
+  /// Place k takes what stood at order[k].
+  void reorder(std::span<const std::uint32_t> order, const Threads& threads) {
+    if (mask_ == kEach) permute(values_, order, threads);
   }
 
   /// The numbers of all balls, place by place.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "carom/permute.h"
 #include "carom/shared_column.h"
 #include "carom/threads.h"
 #include "core/large_pages.h"
@@ -69,41 +69,40 @@ Vec<Dim == 2 ? 1 : 3> moment(const Vec<Dim>& arm, const Vec<Dim>& force) {
   }
 }
 
-/// One vector per ball, stored axis by axis so that loops over all balls run over plain arrays.
+/// One vector per ball, its components side by side: what is asked of a ball is in one place.
 template <int Dim>
 class VectorColumn {
  public:
-  explicit VectorColumn(std::size_t count = 0) {
-    for (auto& axis : axes_) axis.assign(count, 0.0);
+  explicit VectorColumn(std::size_t count = 0) : vectors_(count, Vec<Dim>::Zero()) {}
+
+  std::size_t size() const { return vectors_.size(); }
+  const Vec<Dim>& operator[](std::size_t ball) const { return vectors_[ball]; }
+  void set(std::size_t ball, const Vec<Dim>& v) { vectors_[ball] = v; }
+
+  /// Place k takes what stood at order[k].
+  void reorder(std::span<const std::uint32_t> order, const Threads& threads) {
+    permute(vectors_, order, threads);
   }
 
-  Vec<Dim> operator[](std::size_t ball) const {
-    Vec<Dim> v;
-    for (int axis = 0; axis < Dim; ++axis) v[axis] = axes_[static_cast<std::size_t>(axis)][ball];
-    return v;
+  /// The components of the balls from one up to, but without, another, ball by ball: for loops over all.
+  std::span<double> components(std::size_t begin, std::size_t end) {
+    return {reinterpret_cast<double*>(vectors_.data() + begin), Dim * (end - begin)};
   }
-
-  void set(std::size_t ball, const Vec<Dim>& v) {
-    for (int axis = 0; axis < Dim; ++axis) axes_[static_cast<std::size_t>(axis)][ball] = v[axis];
+  std::span<const double> components(std::size_t begin, std::size_t end) const {
+    return {reinterpret_cast<const double*>(vectors_.data() + begin), Dim * (end - begin)};
   }
-
-  /// Place k takes what stood at order[k]. @param spare  for use meanwhile
-  void reorder(std::span<const std::uint32_t> order, Column<double>& spare, const Threads& threads) {
-    for (Column<double>& axis : axes_) carom::reorder(axis, order, spare, threads);
-  }
-
-  std::span<double> axis(int axis) { return axes_[static_cast<std::size_t>(axis)]; }
-  std::span<const double> axis(int axis) const { return axes_[static_cast<std::size_t>(axis)]; }
 
  private:
-  std::array<Column<double>, Dim> axes_;
+  static_assert(sizeof(Vec<Dim>) == Dim * sizeof(double));
+
+  Column<Vec<Dim>> vectors_;
 };
 
 /// The length of the longest vector; what is not a number counts for nothing.
 template <int Dim>
 double largest_norm(const VectorColumn<Dim>& vectors, const Threads& threads = Threads()) {
-  return std::sqrt(threads.largest(vectors.axis(0).size(),
-                                   [&vectors](std::size_t i) { return vectors[i].squaredNorm(); }));
+  return std::sqrt(
+      threads.largest(vectors.size(), [&vectors](std::size_t i) { return vectors[i].squaredNorm(); }));
 }
 
 /// Components of a spin: along z alone in 2D.
@@ -173,14 +172,13 @@ struct World {
 
  private:
   void reorder_columns(std::span<const std::uint32_t> order, const Threads& threads) {
-    Column<double> spare;
-    position.reorder(order, spare, threads);
-    velocity.reorder(order, spare, threads);
-    radius.reorder(order, spare, threads);
-    inverse_mass.reorder(order, spare, threads);
+    position.reorder(order, threads);
+    velocity.reorder(order, threads);
+    radius.reorder(order, threads);
+    inverse_mass.reorder(order, threads);
     if (!spins()) return;
-    spin.reorder(order, spare, threads);
-    carom::reorder(inverse_inertia, order, spare, threads);
+    spin.reorder(order, threads);
+    permute(inverse_inertia, order, threads);
   }
 };
 

@@ -27,7 +27,7 @@ TEST(Effects, NotNamed_LeaveNothingBehind) {
   Scenario scene = thrown(Vec3::UnitX());
   EXPECT_EQ(make_flight<2>(scene), nullptr);
   EXPECT_TRUE(World<2>(scene.balls).inverse_inertia.empty());
-  EXPECT_EQ(World<2>(scene.balls).spin.axis(0).size(), 0U);
+  EXPECT_EQ(World<2>(scene.balls).spin.size(), 0U);
   scene.effects.gravity = Vec3::UnitY();
   EXPECT_NE(make_flight<2>(scene), nullptr);
   EXPECT_FALSE((FlightModel<3, Gravity<3>>::kDamps));

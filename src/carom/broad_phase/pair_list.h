@@ -320,12 +320,9 @@ class PairList {
   /// Ways are counted from here. What is rounded, a few u = ε/2 each: the coordinates in every step; and the
   /// tests of distances, here and where balls touch, which may differ by 8 u of the coordinates and bounds.
   void forget_ways(const World<Dim>& world) {
-    double farthest = 0.0;
-    for (int axis = 0; axis < Dim; ++axis) {
-      const std::span<const double> places = world.position.axis(axis);
-      farthest = std::max(
-          farthest, threads_.largest(places.size(), [&](std::size_t i) { return std::abs(places[i]); }));
-    }
+    const std::span<const double> places = world.position.components(0, world.size());
+    const double farthest =
+        threads_.largest(places.size(), [&](std::size_t k) { return std::abs(places[k]); });
     const double widest = threads_.largest(bound_.size(), [&](std::size_t i) { return bound_[i]; });
     rounding_m_ = 4.0 * kEpsilon * (farthest + widest + kMostTimes * half_skin_m_);
     enough_m_ = skin_ == PairSkin::kNone ? kNothingHolds : half_skin_m_ - 2.0 * rounding_m_;

@@ -80,9 +80,14 @@ class SortAndSweep {
     int best = 0;
     double largest = 0.0;
     for (int axis = 0; axis < Dim; ++axis) {
-      const auto [low, high] = std::minmax_element(position.axis(axis).begin(), position.axis(axis).end());
-      if (low == high || *high - *low <= largest) continue;
-      largest = *high - *low;
+      double low = kEndless;
+      double high = -kEndless;
+      for (std::size_t i = 0; i < position.size(); ++i) {
+        low = std::min(low, position[i][axis]);
+        high = std::max(high, position[i][axis]);
+      }
+      if (!(high - low > largest)) continue;
+      largest = high - low;
       best = axis;
     }
     return best;

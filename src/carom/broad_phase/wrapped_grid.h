@@ -127,7 +127,7 @@ class WrappedGrid {
     double cells = 1.0;
     std::array<double, Dim> along;
     for (int axis = 0; axis < Dim; ++axis) {
-      const double sides = std::sqrt(12.0) * spread(std::as_const(*position_).axis(axis), stride);
+      const double sides = std::sqrt(12.0) * spread(axis, stride);
       const double number = std::min(std::max(3.0, sides * cells_per_m_), 1e9);
       along[static_cast<std::size_t>(axis)] = number;
       cells *= number;
@@ -140,13 +140,14 @@ class WrappedGrid {
     }
   }
 
-  static double spread(std::span<const double> places, std::size_t stride) {
+  double spread(int axis, std::size_t stride) const {
     double count = 0.0;
     double sum = 0.0;
-    for (std::size_t i = 0; i < places.size(); i += stride, ++count) sum += places[i];
+    for (std::size_t i = 0; i < position_->size(); i += stride, ++count) sum += (*position_)[i][axis];
     double squares = 0.0;
-    for (std::size_t i = 0; i < places.size(); i += stride) {
-      squares += (places[i] - sum / count) * (places[i] - sum / count);
+    for (std::size_t i = 0; i < position_->size(); i += stride) {
+      const double from_mean = (*position_)[i][axis] - sum / count;
+      squares += from_mean * from_mean;
     }
     return std::sqrt(squares / std::max(count, 1.0));
   }
@@ -179,13 +180,15 @@ class WrappedGrid {
   }
 
   void find_cells(std::size_t begin, std::size_t end, std::span<std::uint32_t> cell_of) const {
-    for (int axis = Dim; axis-- > 0;) {
-      const auto k = static_cast<std::size_t>(axis);
-      const std::span<const double> places = std::as_const(*position_).axis(axis);
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::int32_t along = wrapped(cell_along(axis, places[i]), k);
-        cell_of[i] = cell_of[i] * static_cast<std::uint32_t>(shape_[k]) + static_cast<std::uint32_t>(along);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec<Dim>& place = (*position_)[i];
+      std::uint32_t cell = 0;
+      for (int axis = Dim; axis-- > 0;) {
+        const auto k = static_cast<std::size_t>(axis);
+        const std::int32_t along = wrapped(cell_along(axis, place[axis]), k);
+        cell = cell * static_cast<std::uint32_t>(shape_[k]) + static_cast<std::uint32_t>(along);
       }
+      cell_of[i] = cell;
     }
   }
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "carom/evolvers/permute.h"
+#include "carom/permute.h"
 #include "carom/world.h"
 
 namespace carom {
@@ -135,10 +135,14 @@ class EventCells {
     const double thickness = 2.0 * *std::max_element(radius.begin(), radius.end());
     volume_ = 1.0;
     for (int axis = 0; axis < Dim; ++axis) {
-      const auto along = position.axis(axis);
-      const auto [low, high] = std::minmax_element(along.begin(), along.end());
-      origin_[axis] = *low;
-      extent_[axis] = std::max(*high - *low, thickness);
+      double low = position[0][axis];
+      double high = low;
+      for (std::size_t i = 1; i < position.size(); ++i) {
+        low = std::min(low, position[i][axis]);
+        high = std::max(high, position[i][axis]);
+      }
+      origin_[axis] = low;
+      extent_[axis] = std::max(high - low, thickness);
       volume_ *= extent_[axis];
     }
     spacing_ = std::pow(kBallsInCell * volume_ / static_cast<double>(radius.size()), 1.0 / Dim);

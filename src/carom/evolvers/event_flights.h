@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "carom/evolvers/permute.h"
 #include "carom/flight.h"
+#include "carom/permute.h"
 #include "carom/work.h"
 #include "carom/world.h"
 #include "engine/engine.h"

@@ -12,7 +12,7 @@
 #include "carom/evolvers/event_plan.h"
 #include "carom/evolvers/event_queue.h"
 #include "carom/evolvers/event_times.h"
-#include "carom/evolvers/permute.h"
+#include "carom/permute.h"
 
 namespace carom {
 

@@ -245,18 +245,16 @@ class Flights {
   /// What fly_to() does, for balls from one up to, but without, another, and from the step's start to its
   /// end. Whoever was touched flies as well: to ask each would take longer than to put few back.
   void fly_whole_step(std::size_t begin, std::size_t end) {
-    for (int axis = 0; axis < Dim; ++axis) {
-      const std::span<double> x = world_.position.axis(axis);
-      const std::span<double> v = world_.velocity.axis(axis);
-      if constexpr (kAccelerates) {
-        const std::span<const double> a = std::as_const(acceleration_).axis(axis);
-        for (std::size_t i = begin; i < end; ++i) {
-          x[i] += in_the_air_s_ * (v[i] + (0.5 * in_the_air_s_) * a[i]);
-          v[i] += in_the_air_s_ * a[i];
-        }
-      } else {
-        for (std::size_t i = begin; i < end; ++i) x[i] += in_the_air_s_ * v[i];
+    const std::span<double> x = world_.position.components(begin, end);
+    const std::span<double> v = world_.velocity.components(begin, end);
+    if constexpr (kAccelerates) {
+      const std::span<const double> a = std::as_const(acceleration_).components(begin, end);
+      for (std::size_t k = 0; k < x.size(); ++k) {
+        x[k] += in_the_air_s_ * (v[k] + (0.5 * in_the_air_s_) * a[k]);
+        v[k] += in_the_air_s_ * a[k];
       }
+    } else {
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] += in_the_air_s_ * v[k];
     }
   }
 

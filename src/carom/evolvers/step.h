@@ -110,11 +110,9 @@ class StepEvolver final : public Simulation {
   }
 
   void move(std::size_t begin, std::size_t end) {
-    for (int axis = 0; axis < kDim; ++axis) {
-      const std::span<double> x = world_.position.axis(axis);
-      const std::span<const double> v = std::as_const(world_.velocity).axis(axis);
-      for (std::size_t i = begin; i < end; ++i) x[i] += step_s_ * v[i];
-    }
+    const std::span<double> x = world_.position.components(begin, end);
+    const std::span<const double> v = std::as_const(world_.velocity).components(begin, end);
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] += step_s_ * v[k];
   }
 
   void find_contacts() {
