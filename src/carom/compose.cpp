@@ -18,8 +18,10 @@ const Evolver& choose_evolver(const Scenario& scene, const Variant& variant) {
 
 template <int Dim>
 Parts<Dim> make_parts(const Scenario& scene, const Variant& variant) {
+  // Where nobody collides all pairs are none.
+  const Listed listed = scene.effects.collisions ? variant.listed : Listed::kNear;
   return {make_broad_phase<Dim>(scene, variant.broad_phase), make_flight<Dim>(scene),
-          make_cluster_law<Dim>(scene), variant.skin, variant.threads};
+          make_cluster_law<Dim>(scene), listed, variant.threads};
 }
 
 template Parts<2> make_parts<2>(const Scenario&, const Variant&);

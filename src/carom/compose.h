@@ -12,9 +12,8 @@ namespace carom {
 struct Variant {
   std::string evolver;
   std::string broad_phase;
-  /// Of the evolvers of fixed steps: without the skin they look for pairs anew in every step. The result is
-  /// the same.
-  PairSkin skin = PairSkin::kChosen;
+  /// Of the evolvers of fixed steps: with kAll they look at all pairs in every step. The result is the same.
+  Listed listed = Listed::kNear;
   /// Of the same: threads that share the work. The result is the same.
   std::size_t threads = 1;
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "carom/permute.h"
@@ -116,7 +117,7 @@ using Spin = Vec<kSpinAxes<Dim>>;
 /// are empty in a scene without it: what is not asked for takes no byte.
 template <int Dim>
 struct World {
-  VectorColumn<Dim> position;         ///< m
+  VectorColumn<Dim> position;         ///< m; of a ball in flight, where the evolver began to count its way
   VectorColumn<Dim> velocity;         ///< m/s
   SharedColumn radius;                ///< m
   SharedColumn inverse_mass;          ///< 1/kg, 0 for an immovable ball
@@ -162,9 +163,36 @@ struct World {
     number.swap(numbers);
   }
 
-  void snapshot(std::span<BallState> balls) const {
+  /// Has the processor load what the flight of a ball is known by.
+  void fetch(std::size_t ball) const {
+    __builtin_prefetch(&position[ball]);
+    __builtin_prefetch(&velocity[ball]);
+  }
+
+  /// Where a ball is after it has flown straight on for so long.
+  Vec<Dim> place_after(double flown_s, std::size_t ball) const {
+    Vec<Dim> place;
+    for (int axis = 0; axis < Dim; ++axis) {
+      place[axis] = position[ball][axis] + flown_s * velocity[ball][axis];
+    }
+    return place;
+  }
+
+  /// Moves all balls straight on for so long.
+  void fly(double duration_s, const Threads& threads) {
+    if (duration_s == 0.0) return;
+    threads.in_parallel(size(), [&](std::size_t begin, std::size_t end) {
+      const std::span<double> x = position.components(begin, end);
+      const std::span<const double> v = std::as_const(velocity).components(begin, end);
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] += duration_s * v[k];
+    });
+  }
+
+  /// What the balls are like after they have flown straight on for so long.
+  void snapshot(std::span<BallState> balls, double flown_s = 0.0) const {
     for (std::size_t i = 0; i < size(); ++i) {
-      balls[number_of(i)] = {widened<Dim>(position[i]), widened<Dim>(velocity[i]), Vec3::Zero()};
+      const Vec<Dim> place = flown_s == 0.0 ? position[i] : place_after(flown_s, i);
+      balls[number_of(i)] = {widened<Dim>(place), widened<Dim>(velocity[i]), Vec3::Zero()};
     }
     if (!spins()) return;
     for (std::size_t i = 0; i < size(); ++i) balls[number_of(i)].spin = widened_spin<Dim>(spin[i]);

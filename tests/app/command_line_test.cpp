@@ -1068,7 +1068,7 @@ TEST_F(Explain, SharesAddUpToOne) {
 }
 
 TEST_F(Explain, EngineWithoutSettings_IsExplainedByItsStepAlone) {
-  const json found = explained("impact/head-on", "carom:step");
+  const json found = explained("impact/oblique", "carom:step");
   EXPECT_TRUE(found.at("settings").empty());
   EXPECT_EQ(found.at("remainder"), "step");
 }

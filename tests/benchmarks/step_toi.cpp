@@ -93,7 +93,7 @@ std::int64_t steps_for(std::size_t balls) {
 void run_evolver(::benchmark::State& state, const std::string& evolver, int dimension, Kind kind,
                  std::size_t balls, std::size_t threads = 1) {
   const Scenario& scene = gas(dimension, kind, balls);
-  const Variant variant{evolver, {}, PairSkin::kChosen, threads};
+  const Variant variant{evolver, {}, Listed::kNear, threads};
   const std::int64_t heap_before = live_bytes();
   std::unique_ptr<Simulation> simulation = compose(scene, variant);
   simulation->advance(kStep_s, kFirstSteps);

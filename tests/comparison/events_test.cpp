@@ -76,7 +76,9 @@ Scenario rough_gas(int dimension, std::uint64_t seed) {
 
 // --- cuts
 
-TEST(Events, ThatDoNothing_AreAsIfTheyWereNot_ToTheBit_WhereTheyFallOnTheEndOfAStep) {
+/// Straight flights are rounded once in the life of a list of pairs, and where an event ends one; an impact
+/// of balls a few radii apart makes an error at most ten times as large, and a ball has two of them here.
+TEST(Events, ThatDoNothing_ChangeNoMoreThanRounding_WhereTheyFallOnTheEndOfAStep) {
   for (const int dimension : {2, 3}) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
       Scenario scene = rough_gas(dimension, seed);
@@ -90,12 +92,13 @@ TEST(Events, ThatDoNothing_AreAsIfTheyWereNot_ToTheBit_WhereTheyFallOnTheEndOfAS
         const carom::Run whole = run_of(scene, carom_choice(name));
         const carom::Run parts = run_of(cut, carom_choice(name));
         ASSERT_EQ(parts.status, RunStatus::ok) << parts.reason;
-        EXPECT_EQ(apart_m(whole.trajectory, parts.trajectory), 0.0);
+        EXPECT_LE(apart_m(whole.trajectory, parts.trajectory), 100.0 * 8.0 * kEpsilon * 20.0);
         EXPECT_EQ(parts.steps, whole.steps);
         const Tally& a = whole.trajectory.tally(10);
         const Tally& b = parts.trajectory.tally(10);
         EXPECT_EQ(a.impacts, b.impacts);
         EXPECT_EQ(a.wall_impacts, b.wall_impacts);
+        EXPECT_LE(a.impacts - a.wall_impacts, 30);  // two of each ball, each of two balls
         // The same numbers, added up in parts: each of the sums is rounded once an impact.
         const double rounding = kEpsilon * static_cast<double>(a.impacts) * 200.0;
         EXPECT_NEAR((a.external_impulse - b.external_impulse).norm(), 0.0, rounding);

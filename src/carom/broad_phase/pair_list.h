@@ -1,39 +1,24 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "carom/broad_phase/broad_phase.h"
+#include "carom/broad_phase/cruise.h"
+#include "carom/broad_phase/due_pairs.h"
+#include "carom/broad_phase/for_each_passing.h"
 #include "carom/plane.h"
 #include "carom/world.h"
 
 namespace carom {
 
-/// Calls at(k) for every k from begin on, but without end, that passes the test. No branch hangs on what the
-/// test says: of many that fail few pass, and which ones no processor can foresee.
-template <class Test, class At>
-void for_each_passing(std::size_t begin, std::size_t end, const Test& test, const At& at) {
-  constexpr std::size_t kBlock = 256;
-  std::array<std::size_t, kBlock> passing;
-  for (std::size_t first = begin; first < end; first += kBlock) {
-    const std::size_t block_end = std::min(first + kBlock, end);
-    std::size_t found = 0;
-    for (std::size_t k = first; k < block_end; ++k) {
-      passing[found] = k;
-      found += test(k) ? 1U : 0U;
-    }
-    for (std::size_t n = 0; n < found; ++n) at(passing[n]);
-  }
-}
-
-enum class PairSkin { kChosen, kNone };
+/// What a list has: pairs that may touch while it lives, or just all.
+enum class Listed { kNear, kAll };
 
 /// The pairs of balls, and of balls and planes, that may touch before long: a list that serves many steps.
 ///
@@ -41,25 +26,25 @@ enum class PairSkin { kChosen, kNone };
 /// s. Until some ball has moved by s/2 no other pair can touch, for two balls come nearer to each other by at
 /// most s. So the list is made anew only when the longest way that a ball may have gone comes to s/2; and
 /// that way is known from a speed, without a look at any ball. Source: L. Verlet, Phys. Rev. 159, 98 (1967).
+/// For the same reason a pair with a gap g between its balls is not due before balls may have gone g/2.
 ///
 /// Were it the speed of the fastest ball, lists would live the shorter the more balls there are, for the sake
-/// of a few. So ways are counted at a *cruising speed* that few balls exceed; and each of these adds to the
+/// of a few. So ways are counted at a cruising speed that few balls exceed; and each of these adds to the
 /// list, when it is made or when an impact has made the ball fast, the pairs that it may get to until the
 /// list ends.
 ///
-/// The skin decides what is looked at, never what happens: whoever takes pairs from here tests them as if
-/// they came from a broad phase that was built in this step. With the skin kNone they do: that is the slow
-/// twin, and tests hold both to the same bits.
+/// What is listed decides what is looked at, never what happens: with kAll all pairs are, in every step. That
+/// is the slow twin, and tests hold both to the same bits. How long a list lives does not depend on it, nor
+/// on the broad phase, the order of the balls in memory, or the number of threads, for it decides in which
+/// pieces balls that fly straight are moved.
 template <int Dim>
 class PairList {
  public:
-  PairList(std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin, const Threads& threads)
-      : broad_phase_(std::move(broad_phase)), skin_(skin), threads_(threads) {}
+  PairList(std::unique_ptr<BroadPhase<Dim>> broad_phase, Listed listed, const Threads& threads)
+      : broad_phase_(std::move(broad_phase)), listed_(listed), threads_(threads) {}
 
   /// Whether balls can touch only in pairs that the list has while those that cruise go this much farther, m.
-  bool holds(double way_m = 0.0) const {
-    return (travelled_m_ + way_m) * kRoundUp + farthest_jump_m_ <= enough_m_;
-  }
+  bool holds(double way_m = 0.0) const { return gone_m(way_m) <= enough_m_; }
 
   /// No ball that cruises has gone farther than this, m.
   void travelled(double way_m) { travelled_m_ += way_m * kRoundUp + rounding_m_; }
@@ -71,58 +56,50 @@ class PairList {
     farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
   }
 
+  /// Nothing holds any more.
+  void end() { enough_m_ = kNothingHolds; }
+
   /// Whether balls have left the order in which they were sorted, or never were.
   bool is_out_of_order() const { return builds_in_this_order_ >= kBuildsInAnOrder; }
 
-  /// Before build(): sorts the balls in memory if they are out of order, so that those that are looked at
-  /// together are loaded together. The list holds no more then.
+  /// Before build(), and where they are out of order: ends the list and sorts the balls in memory, so that
+  /// those that are looked at together are loaded together. @pre they stand in memory where they are
   void sort(World<Dim>& world) {
     if (!is_out_of_order() || world.size() == 0) return;
     if (bound_.empty()) find_first_skin(world);
     builds_in_this_order_ = 0;
+    end();
     Column<std::uint32_t> order;
     broad_phase_->hand_over_order(order);
     if (order.empty()) return;
+    pairs_ = {};
     world.reorder(order, threads_);
-    enough_m_ = kNothingHolds;
   }
 
   /// Before build(), where balls keep their speeds between impacts: chooses the cruising speed.
-  void measure_speeds(const World<Dim>& world) {
-    const double largest = largest_norm(world.velocity, threads_);
-    cruise_mps_ = std::min(largest, std::max(largest / kMostTimes, kCruise * typical_speed(world)));
-    fast_.clear();
-    threads_.collect(world.size(), fast_,
-                     [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
-                       for_each_passing(
-                           begin, end, [&](std::size_t ball) { return times_cruise(world, ball) > 1.0; },
-                           [&](std::size_t ball) { found.push_back(static_cast<std::uint32_t>(ball)); });
-                     });
-    if (fast_.size() <= few(world)) return;
-    cruise_mps_ = largest;
-    fast_.clear();
-  }
+  void measure_speeds(const World<Dim>& world) { cruise_.measure(world, threads_); }
+
+  /// Those that are faster have to hurry() when the list is made, and when an impact makes them so.
+  const Cruise<Dim>& cruise() const { return cruise_; }
 
   /// Whether the next list will serve more than a step or two in which balls go this far, m.
   bool may_last(double way_m) const { return 2.0 * way_m <= next_half_skin_m_; }
 
-  double cruise_mps() const { return cruise_mps_; }
-  /// The speed of a ball by the cruising speed; 1 where it is not faster.
-  double times_cruise(const World<Dim>& world, std::size_t ball) const {
-    const double speed = world.velocity[ball].norm();
-    return speed > cruise_mps_ ? speed / cruise_mps_ : 1.0;
+  /// Makes the list. @pre balls stand in memory where they are
+  void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
+    build_for_a_step(world, planes, [](std::size_t) { return 0.0; });
+    if (listed_ == Listed::kNear) sort_by_stages(world);
   }
-  /// Who was faster than that when the speeds were measured: each has to hurry() once the list is made.
-  std::span<const std::uint32_t> fast() const { return fast_; }
 
-  /// Makes the list for the balls where they are.
+  /// The same for a step in which balls may go farther than for the list to last.
   /// @param way_m  of each ball, how far the list must hold at least, m
   template <class Way>
-  void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, const Way& way_m) {
+  void build_for_a_step(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, const Way& way_m) {
     find_pairs(world, way_m);
     find_planes(world, planes);
-    forget_ways(world);
+    forget_ways();
     choose_skin(world);
+    if (listed_ == Listed::kAll) list_all(world.size());
     ++builds_in_this_order_;
   }
 
@@ -135,54 +112,56 @@ class PairList {
   };
 
   /// The ball may be faster than the list allows for: adds what pairs it may get to until the list ends, or
-  /// ends the list after the step at hand. What stands in the list already may be added again.
-  /// @param is_new  whether the list has no pair of the ball and another yet, as far as the caller cares
-  template <class IsNew>
+  /// ends the list after the step at hand. Pairs that the list has are added again: they may not be due.
+  /// @param place_of  where a ball is, or was since the list was made
+  template <class PlaceOf>
   void hurry(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, std::size_t ball,
-             const Haste& haste, const IsNew& is_new) {
+             const Haste& haste, const PlaceOf& place_of) {
     if (haste.times <= 1.0 && holds(haste.cruisers_way_m)) return;
-    if (haste.times > kMostTimes) enough_m_ = kNothingHolds;
+    if (haste.times > Cruise<Dim>::kMostTimes) end();
     const double left_m = std::max(0.0, half_skin_m_ - travelled_m_ - haste.cruisers_way_m);
     const double later_m = enough_m_ == kNothingHolds ? 0.0 : haste.times * left_m;
     const double soon_m = gone(world, ball) + haste.way_m;
     const double bound = world.radius[ball] + (soon_m + later_m) * kRoundUp + 2.0 * rounding_m_;
     if (!(bound > bound_[ball])) return;
     bound_[ball] = bound;
+    if (++hurried_ > Cruise<Dim>::few(world.size())) end();
+    if (listed_ == Listed::kAll) return;
     broad_phase_->bound_grew(ball);
     // Bounds are around where balls were when the list was made: this far away at most.
-    const Reach<Dim> reach{world.position[ball], bound + soon_m};
-    add_pairs(world, ball, reach, is_new);
+    add_pairs(world, ball, {place_of(ball), bound + soon_m}, place_of);
     for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
-      if (planes[plane].gap(reach.centre, reach.bound) > 0.0) continue;
+      if (planes[plane].gap(place_of(ball), bound + soon_m) > 0.0) continue;
       besides_.emplace_back(static_cast<std::uint32_t>(ball), plane);
     }
-    if (++hurried_ > few(world)) enough_m_ = kNothingHolds;
   }
 
-  /// Calls move(first, end) for stretches of the balls that make up all, and test(first, end, found) for
-  /// stretches of the pairs that make up all, each after its balls were moved.
-  ///
-  /// The trick: pairs are tested right after the later of their balls was moved. It is near then, and so is
-  /// the earlier one, as a rule: the memory is read once where it would be read for moving and again for
-  /// testing. Threads that share the balls move all of them first.
-  template <class Move, class Found, class Test>
-  void sweep(const Move& move, Found& found, const Test& test) const {
-    if (threads_.count() > 1 || end_of_pairs_.empty()) {
-      threads_.in_parallel(bound_.size(), move);
-      return threads_.collect(pairs_.size(), found, test);
-    }
-    std::size_t tested = 0;
-    for (std::size_t k = 0; k < end_of_pairs_.size(); ++k) {
-      move(k * kStretch, std::min((k + 1) * kStretch, bound_.size()));
-      test(tested, end_of_pairs_[k], found);
-      tested = end_of_pairs_[k];
-    }
-    test(tested, pairs_.size(), found);
+  /// Calls at(a, b, found) for pairs that pass the test, by may_touch(a, b), of those that may touch while
+  /// balls that cruise go this much farther, m. Some come twice.
+  /// @tparam kAhead  so many pairs before one is tested its balls are fetched from memory, if that pays
+  template <std::size_t kAhead, class Found, class Test, class At>
+  void for_each_due(const World<Dim>& world, double way_m, Found& found, const Test& may_touch,
+                    const At& at) const {
+    const std::span<const BallPair> pairs = pairs_.all();
+    const auto test = [&](std::size_t begin, std::size_t end, Found& own) {
+      for_each_passing(
+          begin, end,
+          [&](std::size_t k) {
+            if constexpr (kAhead > 0) {
+              const auto [a, b] = pairs[std::min(k + kAhead, pairs.size() - 1)];
+              world.fetch(a);
+              world.fetch(b);
+            }
+            return may_touch(pairs[k].first, pairs[k].second);
+          },
+          [&](std::size_t k) { at(pairs[k].first, pairs[k].second, own); });
+    };
+    pairs_.test(stage_at(gone_m(way_m) + 2.0 * rounding_m_), threads_, found, test);
   }
 
-  /// Two balls that may touch.
-  std::span<const BallPair> pairs() const { return pairs_; }
-  /// A ball and a plane that may touch.
+  /// Two balls that may touch; some stand here twice.
+  std::span<const BallPair> pairs() const { return pairs_.all(); }
+  /// A ball and a plane that may touch; some stand here twice.
   std::span<const BallPair> besides() const { return besides_; }
 
   std::string_view name() const { return broad_phase_->name(); }
@@ -196,30 +175,29 @@ class PairList {
   static constexpr double kFirstGuess = 0.2;
   static constexpr double kMuchLarger = 1.25;
   static constexpr int kMostGuesses = 8;
-  /// The cruising speed by the root of the mean square, where the fastest ball is faster. Of the speeds in a
-  /// gas (J. C. Maxwell, 1860) 0.2 % are larger in space and 0.8 % in the plane.
-  static constexpr double kCruise = 2.2;
-  /// A ball faster by more than this looks too far around: then the cruising speed is larger.
-  static constexpr double kMostTimes = 4.0;
-  /// Of the balls: if more than one in so many are fast, it is dearer to look around each than to make lists
-  /// more often.
-  static constexpr std::size_t kFewIsOneIn = 50;
-  static constexpr std::size_t kSample = 1024;
-  /// Balls that are moved before their pairs are tested: what they take is a part of the nearest caches.
-  static constexpr std::size_t kStretch = 4096;
-  static constexpr std::size_t kManyStretches = 8;
   /// Lists after which balls have left the order in which they were sorted.
   static constexpr int kBuildsInAnOrder = 16;
   /// For sums of ways, those of floats included: each addition is off by 2⁻²⁴ at most.
   static constexpr double kRoundUp = 1.0 + 0x1p-20;
   static constexpr double kNothingHolds = -1.0;
 
+  /// How far balls that cruise, or jumped, have gone at most once they have gone this much farther, m.
+  double gone_m(double way_m) const { return (travelled_m_ + way_m) * kRoundUp + farthest_jump_m_; }
+
+  /// The stage of the list's life at which they have gone this far.
+  std::size_t stage_at(double gone_m) const {
+    const double last = static_cast<double>(DuePairs::kStages) - 1.0;
+    return gone_m < half_skin_m_
+               ? static_cast<std::size_t>(std::min(last, gone_m / half_skin_m_ * (last + 1.0)))
+               : DuePairs::kStages - 1;
+  }
+
   /// Makes lists that nobody uses, until one has the skin that it should have had.
   void find_first_skin(const World<Dim>& world) {
     double radii = 0.0;
     for (std::size_t i = 0; i < world.size(); ++i) radii += world.radius[i];
     diameter_m_ = 2.0 * radii / static_cast<double>(world.size());
-    next_half_skin_m_ = skin_ == PairSkin::kNone ? 0.0 : 0.5 * kFirstGuess * diameter_m_;
+    next_half_skin_m_ = 0.5 * kFirstGuess * diameter_m_;
     for (int guess = 0; guess < kMostGuesses; ++guess) {
       find_pairs(world, [](std::size_t) { return 0.0; });
       choose_skin(world);
@@ -230,6 +208,8 @@ class PairList {
   template <class Way>
   void find_pairs(const World<Dim>& world, const Way& way_m) {
     half_skin_m_ = next_half_skin_m_;
+    const std::span<const double> places = world.position.components(0, world.size());
+    farthest_m_ = threads_.largest(places.size(), [&](std::size_t k) { return std::abs(places[k]); });
     bound_.resize(world.size());
     threads_.in_parallel(world.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -237,33 +217,39 @@ class PairList {
       }
     });
     broad_phase_->build(world.position, bound_, threads_);
-    broad_phase_->find_pairs(pairs_, threads_);
-    sort_pairs(world.size());
+    broad_phase_->find_pairs(pairs_.find(), threads_);
+  }
+
+  void sort_by_stages(const World<Dim>& world) {
+    pairs_.sort(world.size(), [&](const BallPair& pair) {
+      const auto [a, b] = pair;
+      const double gap = (world.position[a] - world.position[b]).norm() - world.radius[a] - world.radius[b];
+      return stage_at(0.5 * std::max(0.0, gap));
+    });
+  }
+
+  void list_all(std::size_t balls) {
+    Column<BallPair>& pairs = pairs_.find();
+    pairs.clear();
+    for (std::uint32_t b = 1; b < balls; ++b) {
+      for (std::uint32_t a = 0; a < b; ++a) pairs.emplace_back(a, b);
+    }
   }
 
   /// For the next list: half the skin that would have added kMorePairs for each ball to the pairs that touch,
   /// had this list been made with it: with n balls in a unit of space around each, ½ n C R^Dim pairs are
   /// nearer than R.
   void choose_skin(const World<Dim>& world) {
-    if (skin_ == PairSkin::kNone || world.size() == 0) return;
+    if (world.size() == 0) return;
     const double volume = std::pow(diameter_m_ + 2.0 * half_skin_m_, Dim);
-    const double pairs_per_ball = static_cast<double>(pairs_.size() + 1) / static_cast<double>(world.size());
+    const double pairs_per_ball =
+        static_cast<double>(pairs_.all().size() + 1) / static_cast<double>(world.size());
     const double wanted = std::pow(diameter_m_, Dim) + kMorePairs / pairs_per_ball * volume;
     const double half_skin_m = 0.5 * (std::pow(wanted, 1.0 / Dim) - diameter_m_);
-    next_half_skin_m_ = std::clamp(half_skin_m, 0.5 * half_skin_m_, 2.0 * half_skin_m_);
+    // Where hardly any pairs are found it would grow without end.
+    const double most_m = std::min(2.0 * half_skin_m_, diameter_m_ + farthest_m_);
+    next_half_skin_m_ = std::min(std::max(half_skin_m, 0.5 * half_skin_m_), most_m);
   }
-
-  /// The root of the speeds' mean square, m/s, of a sample.
-  static double typical_speed(const World<Dim>& world) {
-    const std::size_t stride = 1 + world.size() / kSample;
-    double squares = 0.0;
-    double count = 0.0;
-    for (std::size_t i = 0; i < world.size(); i += stride, ++count)
-      squares += world.velocity[i].squaredNorm();
-    return std::sqrt(squares / std::max(1.0, count));
-  }
-
-  static std::size_t few(const World<Dim>& world) { return world.size() / kFewIsOneIn; }
 
   /// How far a ball has gone at most since the list was made, m. In the share of the list's life that is over
   /// it has gone no more than that share of what it is allowed: one that became fast later had gone less
@@ -276,37 +262,23 @@ class PairList {
   }
 
   /// The pairs of a ball with all others whose bounds come into this reach.
-  template <class IsNew>
-  void add_pairs(const World<Dim>& world, std::size_t ball, const Reach<Dim>& reach, const IsNew& is_new) {
+  template <class PlaceOf>
+  void add_pairs(const World<Dim>& world, std::size_t ball, const Reach<Dim>& reach,
+                 const PlaceOf& place_of) {
     broad_phase_->find_near(reach, near_);
     for (const std::uint32_t other : near_) {
       if (other == ball) continue;
       const double allowed_m = bound_[other] - world.radius[other];  // and no farther from where it was
-      if (!may_meet(reach, {world.position[other], bound_[other] + allowed_m}) || !is_new(other)) continue;
-      const auto self = static_cast<std::uint32_t>(ball);
-      pairs_.emplace_back(std::min(self, other), std::max(self, other));
+      if (!may_meet(reach, {place_of(other), bound_[other] + allowed_m})) continue;
+      pairs_.add(static_cast<std::uint32_t>(ball), other);
     }
-  }
-
-  /// Puts pairs in the order of the stretches that their later balls stand in. Few balls are near anyway;
-  /// then all is left as it is.
-  void sort_pairs(std::size_t balls) {
-    end_of_pairs_.clear();
-    if (balls < kManyStretches * kStretch) return;
-    const auto stretch_of = [](const BallPair& pair) { return pair.second / kStretch; };
-    end_of_pairs_.resize((balls - 1) / kStretch + 1, 0);
-    for (const BallPair& pair : pairs_) ++end_of_pairs_[stretch_of(pair)];
-    std::exclusive_scan(end_of_pairs_.begin(), end_of_pairs_.end(), end_of_pairs_.begin(), 0U);
-    Column<BallPair> sorted(pairs_.size());
-    for (const BallPair& pair : pairs_) sorted[end_of_pairs_[stretch_of(pair)]++] = pair;
-    pairs_.swap(sorted);
   }
 
   void find_planes(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
     besides_.clear();
     for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
       const auto is_beside = [&](std::size_t ball) {
-        return planes[plane].gap(world.position[ball], bound_[ball]) <= 0.0;
+        return listed_ == Listed::kAll || planes[plane].gap(world.position[ball], bound_[ball]) <= 0.0;
       };
       threads_.collect(world.size(), besides_,
                        [&](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
@@ -319,13 +291,10 @@ class PairList {
 
   /// Ways are counted from here. What is rounded, a few u = ε/2 each: the coordinates in every step; and the
   /// tests of distances, here and where balls touch, which may differ by 8 u of the coordinates and bounds.
-  void forget_ways(const World<Dim>& world) {
-    const std::span<const double> places = world.position.components(0, world.size());
-    const double farthest =
-        threads_.largest(places.size(), [&](std::size_t k) { return std::abs(places[k]); });
+  void forget_ways() {
     const double widest = threads_.largest(bound_.size(), [&](std::size_t i) { return bound_[i]; });
-    rounding_m_ = 4.0 * kEpsilon * (farthest + widest + kMostTimes * half_skin_m_);
-    enough_m_ = skin_ == PairSkin::kNone ? kNothingHolds : half_skin_m_ - 2.0 * rounding_m_;
+    rounding_m_ = 4.0 * kEpsilon * (farthest_m_ + widest + Cruise<Dim>::kMostTimes * half_skin_m_);
+    enough_m_ = half_skin_m_ - 2.0 * rounding_m_;
     travelled_m_ = 0.0;
     hurried_ = 0;
     farthest_jump_m_ = 0.0;
@@ -333,23 +302,22 @@ class PairList {
   }
 
   std::unique_ptr<BroadPhase<Dim>> broad_phase_;
-  PairSkin skin_;
+  Listed listed_;
   const Threads& threads_;
   double diameter_m_ = 0.0;  ///< mean
   double half_skin_m_ = 0.0;
   double next_half_skin_m_ = 0.0;
-  double cruise_mps_ = 0.0;
+  Cruise<Dim> cruise_;
   double enough_m_ = kNothingHolds;  ///< how far a ball that cruises may go until the list is worth nothing
   double travelled_m_ = 0.0;
   double rounding_m_ = 0.0;  ///< of coordinates, in a step
+  double farthest_m_ = 0.0;  ///< no coordinate is larger
   std::size_t hurried_ = 0;  ///< times that a ball added pairs
   double farthest_jump_m_ = 0.0;
   Column<float> jumps_m_;  ///< of each ball; empty before the first
   Column<double> bound_;   ///< m, radius and how far the ball may get from where it was
-  Column<BallPair> pairs_;
-  std::vector<std::uint32_t> end_of_pairs_;  ///< of each stretch, in pairs_; empty where balls are few
+  DuePairs pairs_;
   std::vector<BallPair> besides_;
-  std::vector<std::uint32_t> fast_;
   std::vector<std::uint32_t> near_;
   int builds_in_this_order_ = kBuildsInAnOrder;
 };

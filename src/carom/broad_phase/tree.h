@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "carom/broad_phase/count.h"
@@ -166,7 +167,6 @@ class Tree {
     for (std::size_t i = 0; i < items_.size(); ++i) {
       items_[i] = {{position[i], bound_[i]}, static_cast<std::uint32_t>(i), 0};
     }
-    sorted_.resize(items_.size());
     part_of_.resize(items_.size());
     place_of_.resize(items_.size());
   }
@@ -232,11 +232,22 @@ class Tree {
     return parts;
   }
 
+  /// Puts every ball into its part, by changing places with one that stands in the way. The balls were in
+  /// this order not long ago, so that few have to.
   void sort_into(Range balls, const Parts& parts) {
     count_.build_operations(balls.size());
     Parts next = parts;
-    for (std::uint32_t a = balls.first; a < balls.end; ++a) sorted_[next[part_of_[a]]++] = items_[a];
-    std::copy(sorted_.begin() + balls.first, sorted_.begin() + balls.end, items_.begin() + balls.first);
+    for (std::uint8_t part = 0; part <= kChildren; ++part) {
+      for (std::uint32_t& a = next[part]; a < parts[part + std::size_t{1}];) {
+        if (part_of_[a] == part) {
+          ++a;
+          continue;
+        }
+        const std::uint32_t there = next[part_of_[a]]++;
+        std::swap(items_[a], items_[there]);
+        std::swap(part_of_[a], part_of_[there]);
+      }
+    }
   }
 
   void note_nodes() {
@@ -296,8 +307,7 @@ class Tree {
   Column<Item> items_;  ///< the balls, node by node
   Column<Node> nodes_;
   Column<std::uint32_t> place_of_;  ///< of each ball in items_
-  Column<Item> sorted_;             ///< for use while building
-  Column<std::uint8_t> part_of_;    ///< the same
+  Column<std::uint8_t> part_of_;    ///< for use while building
   [[no_unique_address]] Count count_;
 };
 

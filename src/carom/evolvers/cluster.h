@@ -43,16 +43,16 @@ class Cluster {
         held_(held),
         frictions_(frictions),
         rule_(flights),
-        mark_(flights.size(), 0),
         number_(flights.size(), 0) {}
 
   const std::vector<std::uint32_t>& members() const { return members_; }
-  bool has(std::uint32_t ball) const { return mark_[ball] == marks_; }
+  bool has(std::uint32_t ball) const {
+    return number_[ball] < members_.size() && members_[number_[ball]] == ball;
+  }
   const RestRule<Dim, Balls>& rule() const { return rule_; }
 
   void begin() {
     members_.clear();
-    ++marks_;
     rule_.begin_cluster();
   }
 
@@ -166,7 +166,6 @@ class Cluster {
   bool is_immovable(std::uint32_t ball) const { return world().inverse_mass[ball] == 0.0; }
 
   void append(std::uint32_t ball) {
-    mark_[ball] = marks_;
     number_[ball] = static_cast<std::uint32_t>(members_.size());
     members_.push_back(ball);
   }
@@ -219,9 +218,8 @@ class Cluster {
   RestRule<Dim, Balls> rule_;
   std::vector<std::uint32_t> members_;
   std::vector<std::uint32_t> near_;
-  std::vector<std::uint32_t> mark_;  ///< the last cluster that a ball was in
-  std::uint32_t marks_ = 0;
-  std::vector<std::uint32_t> number_;  ///< of a member among the members
+  /// Of a member, its number among the members; of another, any: it is not the one there.
+  Column<std::uint32_t> number_;
 };
 
 }  // namespace carom

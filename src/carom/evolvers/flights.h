@@ -17,9 +17,10 @@ namespace carom {
 /// The balls within a step, each flying on its own parabola from its own moment on, and the account of what
 /// walls and immovable balls push.
 ///
-/// Few balls are hit in a step. These are touched one by one, and a record is kept of each; all fly
-/// from the step's start to its end together, in loops over plain arrays, and those with a record are put
-/// back. Nobody asks where they are until the next step, so that they land as it goes from ball to ball.
+/// Few balls are hit in a step. These are touched one by one, and a record is kept of each. Where fields act,
+/// all fly from the step's start to its end together, in a loop over a plain array, and those with a record
+/// are put back. Where none do nobody is moved: balls stand in memory where they were when they last landed,
+/// or would have been had they always flown as they fly now.
 ///
 /// @tparam kAccelerates  false: no acceleration is stored, added, or even zero
 /// @tparam kFriction     whether pushes can turn the balls
@@ -34,8 +35,6 @@ class Flights {
       : threads_(threads),
         world_(scene.balls, scene.effects.spin),
         model_(std::move(model)),
-        clock_(world_.size(), 0.0),
-        stamp_(world_.size(), 0),
         touched_(world_.size(), kUntouched),
         acceleration_(kAccelerates ? world_.size() : 0),
         force_(kAccelerates ? world_.size() : 0),
@@ -46,10 +45,11 @@ class Flights {
   const World<Dim>& world() const { return world_; }
   std::size_t size() const { return world_.size(); }
   double step_s() const { return step_s_; }
-  double left_s(std::size_t ball) const { return step_s_ - clock_[ball]; }
-  double clock(std::size_t ball) const { return clock_[ball]; }
+  double left_s(std::size_t ball) const { return step_s_ - clock(ball); }
+  /// s from the start of the step: when the flight of a ball began that it flies now, or the step.
+  double clock(std::size_t ball) const { return is_touched(ball) ? record(ball).clock : 0.0; }
   /// Counts the flights that a ball has begun in this step.
-  std::uint32_t stamp(std::size_t ball) const { return stamp_[ball]; }
+  std::uint32_t stamp(std::size_t ball) const { return is_touched(ball) ? record(ball).stamp : 0; }
   /// What the strongest acceleration gives in a step, m/s.
   double field_speed() const { return field_speed_; }
   Account<Dim>& account() { return account_; }
@@ -75,56 +75,53 @@ class Flights {
     }
   }
 
-  /// Ends the step: whoever was touched arrives. All are in the air then until they land(), which has time
-  /// until somebody asks where they are; where fields act the next step does so at once.
-  void finish_step() {
+  /// Ends the step. @param land  moves all balls in memory to where they are
+  void finish_step(bool land) {
     // In the order of their numbers: what bears them is added up.
     std::sort(records_.begin(), records_.end(),
               [this](const Record& a, const Record& b) { return world_.before(a.ball, b.ball); });
     arrivals_.clear();
-    for (const Record& record : records_) {
-      fly_to(record.ball, step_s_);
-      arrivals_.push_back({record.ball, world_.position[record.ball], world_.velocity[record.ball]});
-      forget(record.ball);
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+      const std::size_t ball = records_[k].ball;
+      touched_[ball] = static_cast<std::uint32_t>(k);
+      fly_to(ball, step_s_);
+      arrivals_.push_back({world_.position[ball], world_.velocity[ball]});
+    }
+    if constexpr (kAccelerates) {
+      fly_whole_step();
+    } else {
+      flown_s_ += step_s_;
+      if (land) this->land();
+    }
+    for (std::size_t k = 0; k < records_.size(); ++k) {
+      const auto& [x, v] = arrivals_[k];
+      world_.velocity.set(records_[k].ball, v);
+      world_.position.set(records_[k].ball, flown_s_ == 0.0 ? x : Vec<Dim>(x - flown_s_ * v));
+      forget(records_[k].ball);
     }
     records_.clear();
-    std::sort(arrivals_.begin(), arrivals_.end(), before_in_memory);
-    in_the_air_s_ = step_s_;
-    if constexpr (kAccelerates) land();
   }
 
-  /// Brings all balls to the end of the last step, if they are not there.
+  /// Between steps: moves the balls in memory to where they are.
   void land() {
-    threads_.in_parallel(size(), [this](std::size_t begin, std::size_t end) { land(begin, end); });
-    all_have_landed();
+    world_.fly(flown_s_, threads_);
+    flown_s_ = 0.0;
   }
 
-  /// The same for balls from one up to, but without, another: each once, and then all_have_landed().
-  void land(std::size_t begin, std::size_t end) {
-    if (in_the_air_s_ == 0.0) return;
-    fly_whole_step(begin, end);
-    const Arrival first{static_cast<std::uint32_t>(begin), {}, {}};
-    for (auto arrival = std::lower_bound(arrivals_.begin(), arrivals_.end(), first, before_in_memory);
-         arrival != arrivals_.end() && arrival->ball < end; ++arrival) {
-      world_.position.set(arrival->ball, arrival->x);
-      if constexpr (kAccelerates) world_.velocity.set(arrival->ball, arrival->v);
-    }
-  }
-
-  void all_have_landed() { in_the_air_s_ = 0.0; }
+  void snapshot(std::span<BallState> balls) const { world_.snapshot(balls, flown_s_); }
 
   /// How far a ball gets in this step at most, m, where fields act.
   double longest_path() const requires kAccelerates { return (fastest_ + 0.5 * field_speed_) * step_s_; }
 
   /// Where the ball can get in this step.
   Reach<Dim> reach(std::size_t ball) const {
-    if (touched_[ball] != kUntouched) return records_[touched_[ball]].reach;
-    return {world_.position[ball], world_.radius[ball] + path_bound(ball, step_s_)};
+    if (is_touched(ball)) return record(ball).reach;
+    return {place(ball), world_.radius[ball] + path_bound(ball, step_s_)};
   }
 
   /// After a new flight has begun; returns whether the ball can get farther than before.
   bool widen_reach(std::size_t ball) {
-    Reach<Dim>& reach = record_of(ball).reach;
+    Reach<Dim>& reach = touch(ball).reach;
     const double bound = world_.radius[ball] + way_in_step(ball);
     if (bound <= reach.bound) return false;
     reach.bound = bound;
@@ -133,18 +130,35 @@ class Flights {
 
   /// How far from where it began the step a ball may get in it, m. @pre it was touched
   double way_in_step(std::size_t ball) const {
-    const double moved = (world_.position[ball] - records_[touched_[ball]].reach.centre).norm();
+    const double moved = (world_.position[ball] - record(ball).reach.centre).norm();
     return moved + path_bound(ball, left_s(ball));
+  }
+
+  /// Has the processor load what the flight of a ball is known by.
+  void fetch(std::size_t ball) const {
+    world_.fetch(ball);
+    __builtin_prefetch(&touched_[ball]);
+  }
+
+  /// Where a ball is at its clock.
+  Vec<Dim> place(std::size_t ball) const {
+    return is_touched(ball) ? world_.position[ball] : place_at_start(ball);
+  }
+
+  /// Where a ball that was not touched is at the start of the step.
+  Vec<Dim> place_at_start(std::size_t ball) const {
+    if constexpr (kAccelerates) return world_.position[ball];
+    return world_.place_after(flown_s_, ball);
   }
 
   /// A ball's flight from its clock on.
   Motion<Dim> motion(std::size_t ball) const {
-    return {world_.position[ball], world_.velocity[ball], acceleration(ball)};
+    return {place(ball), world_.velocity[ball], acceleration(ball)};
   }
 
   /// Where the ball is at a time of the step, its clock or later.
   Motion<Dim> motion_at(std::size_t ball, double time_s) const {
-    return motion(ball).after(time_s - clock_[ball]);
+    return motion(ball).after(time_s - clock(ball));
   }
 
   /// How far the ball can get in `duration_s`, m.
@@ -156,8 +170,8 @@ class Flights {
 
   /// Moves the ball along its flight to a time of the step, and books what bears it on the way.
   void fly_to(std::size_t ball, double time_s) {
-    record_of(ball);
-    const double tau = time_s - clock_[ball];
+    Record& record = touch(ball);
+    const double tau = time_s - record.clock;
     if constexpr (kAccelerates) {
       if (!force_[ball].isZero(0.0)) book_force(ball, tau);
       const Motion<Dim> then = motion(ball).after(tau);
@@ -167,7 +181,7 @@ class Flights {
       world_.position.set(ball, world_.position[ball] + tau * world_.velocity[ball]);
     }
     if constexpr (kTurning) world_.spin.set(ball, world_.spin[ball] + tau * spin_acceleration_[ball]);
-    clock_[ball] = time_s;
+    record.clock = time_s;
   }
 
   /// After an impact: a new, free flight from here to the end of the step.
@@ -206,59 +220,58 @@ class Flights {
   /// Of a ball that was touched in this step.
   struct Record {
     std::uint32_t ball;
+    std::uint32_t stamp;
+    double clock;  ///< s, from the start of the step: where position and velocity stand
     Reach<Dim> reach;
   };
 
   /// Where a ball that was touched is at the end of the step.
   struct Arrival {
-    std::uint32_t ball;
     Vec<Dim> x;
     Vec<Dim> v;
   };
 
   static constexpr std::uint32_t kUntouched = std::numeric_limits<std::uint32_t>::max();
 
-  /// Makes a record of the ball as it is, unless there is one.
-  Record& record_of(std::size_t ball) {
-    if (touched_[ball] == kUntouched) {
+  bool is_touched(std::size_t ball) const { return touched_[ball] != kUntouched; }
+  const Record& record(std::size_t ball) const { return records_[touched_[ball]]; }
+
+  /// Makes a record of the ball as it is at the start of the step, unless there is one. To change the
+  /// velocity of a ball without one would be to put it somewhere else.
+  Record& touch(std::size_t ball) {
+    if (!is_touched(ball)) {
       const Reach<Dim> from_here = reach(ball);
+      world_.position.set(ball, from_here.centre);
       touched_[ball] = static_cast<std::uint32_t>(records_.size());
-      records_.push_back({static_cast<std::uint32_t>(ball), from_here});
+      records_.push_back({static_cast<std::uint32_t>(ball), 0, 0.0, from_here});
     }
     return records_[touched_[ball]];
   }
 
   void note_flight(std::size_t ball) {
-    record_of(ball);
-    ++stamp_[ball];
+    ++touch(ball).stamp;
     if constexpr (kAccelerates) fastest_ = std::max(fastest_, world_.velocity[ball].norm());
   }
 
   void forget(std::size_t ball) {
     touched_[ball] = kUntouched;
-    clock_[ball] = 0.0;
-    stamp_[ball] = 0;
     if constexpr (kAccelerates) force_.set(ball, Vec<Dim>::Zero());
     if constexpr (kTurning) still(ball);
   }
 
-  /// What fly_to() does, for balls from one up to, but without, another, and from the step's start to its
-  /// end. Whoever was touched flies as well: to ask each would take longer than to put few back.
-  void fly_whole_step(std::size_t begin, std::size_t end) {
-    const std::span<double> x = world_.position.components(begin, end);
-    const std::span<double> v = world_.velocity.components(begin, end);
-    if constexpr (kAccelerates) {
+  /// What fly_to() does, for all balls and from the step's start to its end. Whoever was touched flies as
+  /// well: to ask each would take longer than to put few back.
+  void fly_whole_step() requires kAccelerates {
+    threads_.in_parallel(size(), [this](std::size_t begin, std::size_t end) {
+      const std::span<double> x = world_.position.components(begin, end);
+      const std::span<double> v = world_.velocity.components(begin, end);
       const std::span<const double> a = std::as_const(acceleration_).components(begin, end);
       for (std::size_t k = 0; k < x.size(); ++k) {
-        x[k] += in_the_air_s_ * (v[k] + (0.5 * in_the_air_s_) * a[k]);
-        v[k] += in_the_air_s_ * a[k];
+        x[k] += step_s_ * (v[k] + (0.5 * step_s_) * a[k]);
+        v[k] += step_s_ * a[k];
       }
-    } else {
-      for (std::size_t k = 0; k < x.size(); ++k) x[k] += in_the_air_s_ * v[k];
-    }
+    });
   }
-
-  static bool before_in_memory(const Arrival& a, const Arrival& b) { return a.ball < b.ball; }
 
   void still(std::size_t ball) {
     spin_acceleration_.set(ball, Spin<Dim>::Zero());
@@ -290,13 +303,11 @@ class Flights {
   Account<Dim> account_;
   double step_s_ = 0.0;
   double field_speed_ = 0.0;
-  double fastest_ = 0.0;  ///< m/s, no ball is faster; where fields act
-  Column<double> clock_;  ///< s, from the start of the step: where position and velocity stand
-  Column<std::uint32_t> stamp_;
+  double fastest_ = 0.0;           ///< m/s, no ball is faster; where fields act
   Column<std::uint32_t> touched_;  ///< of each ball, which of the records is its
   std::vector<Record> records_;
   std::vector<Arrival> arrivals_;
-  double in_the_air_s_ = 0.0;  ///< how long the balls have flown without being moved
+  double flown_s_ = 0.0;  ///< how long balls have flown by the start of the step since they landed
   VectorColumn<Dim> acceleration_;
   VectorColumn<Dim> force_;  ///< N, by the walls and immovable balls that bear the ball
   VectorColumn<kSpinAxes<Dim>> spin_acceleration_;

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,18 +18,21 @@ namespace carom {
 /// Which balls may meet in a step, by how far each may get in it. `Balls` are Flights (flights.h).
 ///
 /// Pairs come from a list that serves many steps (pair_list.h). Whom a ball may meet that was hit is read
-/// from it as well: the pairs of a ball are a chain, from the last in the list to the first. What is found is
-/// held against the reaches in this step, so that nothing depends on how long a list lives.
+/// from it as well, and noted ball by ball: one place in memory to look at. What is found is held against the
+/// reaches in this step, so that nothing depends on what else is listed.
 template <int Dim, class Balls>
 class Neighbours {
  public:
-  Neighbours(Balls& flights, std::unique_ptr<BroadPhase<Dim>> broad_phase, PairSkin skin,
+  Neighbours(Balls& flights, std::unique_ptr<BroadPhase<Dim>> broad_phase, Listed listed,
              const std::vector<Plane<Dim>>& planes, const Threads& threads)
-      : flights_(flights), planes_(planes), list_(std::move(broad_phase), skin, threads) {}
+      : flights_(flights), planes_(planes), list_(std::move(broad_phase), listed, threads) {}
 
-  /// Between steps: sorts the balls in memory now and then.
+  /// Whether nothing has to be looked for anew before the next step, if that is as long as the last.
+  bool hold_for_a_step() const { return list_.holds(longest_path()); }
+
+  /// Between steps: sorts the balls in memory now and then, when a list is about to end.
   void sort() {
-    if (!list_.is_out_of_order()) return;
+    if (!list_.is_out_of_order() || hold_for_a_step()) return;
     flights_.land();
     list_.sort(flights_.world());
   }
@@ -38,13 +42,18 @@ class Neighbours {
     if (list_.holds(longest_path())) return;
     flights_.land();
     if constexpr (!Balls::kFieldsAct) list_.measure_speeds(world());
-    const bool lasts = list_.may_last(longest_path());
-    list_.build(world(), planes_,
-                [&](std::size_t ball) { return lasts ? 0.0 : flights_.path_bound(ball, flights_.step_s()); });
-    last_of_.assign(world().size(), kNone);
-    before_.clear();
-    chain_new_pairs();
-    for (const std::uint32_t ball : list_.fast()) hurry(ball, flights_.path_bound(ball, flights_.step_s()));
+    if (list_.may_last(longest_path())) {
+      list_.build(world(), planes_);
+    } else {
+      list_.build_for_a_step(world(), planes_, [this](std::size_t ball) {
+        return flights_.path_bound(ball, flights_.step_s());
+      });
+    }
+    note_neighbours();
+    if constexpr (Balls::kFieldsAct) return;
+    for (const std::uint32_t ball : list_.cruise().faster()) {
+      hurry(ball, flights_.path_bound(ball, flights_.step_s()));
+    }
   }
 
   void end_step() { list_.travelled(longest_path()); }
@@ -52,20 +61,32 @@ class Neighbours {
   /// A ball was put this far away, m.
   void jumped(std::size_t ball, double way_m) { list_.jumped(ball, way_m); }
 
-  /// All balls land, and test(first, end, found) gets the pairs, stretch by stretch.
-  template <class Found, class Test>
-  void land_and_test(Found& found, const Test& test) {
-    list_.sweep([this](std::size_t begin, std::size_t end) { flights_.land(begin, end); }, found, test);
-    flights_.all_have_landed();
+  /// At the step's start: appends all pairs that may meet in it, some twice, if the cheap question
+  /// come_near(a, b) does not say that they do not.
+  template <class Question>
+  void find_meeting(std::vector<BallPair>& meeting, const Question& come_near) const {
+    constexpr std::size_t kAhead = 32;
+    list_.template for_each_due<kAhead>(
+        world(), longest_path(), meeting, come_near,
+        [this](std::uint32_t a, std::uint32_t b, std::vector<BallPair>& found) {
+          if (may_meet_in_step(a, b)) found.emplace_back(a, b);
+        });
   }
 
-  /// Two balls that may meet in this step, or in a later one.
-  std::span<const BallPair> pairs() const { return list_.pairs(); }
   /// A ball and a plane that may; some stand here twice.
   std::span<const BallPair> besides() const { return list_.besides(); }
 
   bool may_meet_in_step(std::size_t a, std::size_t b) const {
     return may_meet(flights_.reach(a), flights_.reach(b));
+  }
+
+  /// Has the processor load what is soon asked about a ball, and about its neighbours.
+  void fetch(std::size_t ball) const {
+    flights_.fetch(ball);
+    __builtin_prefetch(&start_[ball]);
+  }
+  void fetch_around(std::size_t ball) const {
+    for (std::uint32_t k = start_[ball]; k < start_[ball + 1]; ++k) flights_.fetch(neighbour_[k]);
   }
 
   /// Every other ball that this one may meet in the step, in any order.
@@ -92,32 +113,29 @@ class Neighbours {
   std::string_view name() const { return list_.name(); }
 
  private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
   const World<Dim>& world() const { return flights_.world(); }
 
   /// How far a ball that cruises may get in the step, m. Where fields act, that is any ball.
   double longest_path() const {
     if constexpr (Balls::kFieldsAct) return flights_.longest_path();
-    return list_.cruise_mps() * flights_.step_s();
+    return list_.cruise().mps() * flights_.step_s();
   }
 
   /// @param way_m  how far from where it began the step the ball may get in it
   void hurry(std::size_t ball, double way_m) {
-    const double times = Balls::kFieldsAct ? 1.0 : list_.times_cruise(world(), ball);
+    const double times = Balls::kFieldsAct ? 1.0 : list_.cruise().times(world(), ball);
     list_.hurry(world(), planes_, ball, {.way_m = way_m, .cruisers_way_m = longest_path(), .times = times},
-                [&](std::uint32_t other) { return !is_listed(ball, other); });
-    chain_new_pairs();
+                [this](std::size_t any) { return flights_.place(any); });
+    note_more_neighbours_of(static_cast<std::uint32_t>(ball));
   }
 
   template <class Visit>
   void for_each_listed(std::size_t ball, const Visit& visit) const {
-    const std::span<const BallPair> pairs = list_.pairs();
-    for (std::uint32_t k = last_of_[ball]; k != kNone;) {
-      const bool is_second = pairs[k].second == ball;
-      visit(is_second ? pairs[k].first : pairs[k].second);
-      k = is_second ? before_[k].second : before_[k].first;
-    }
+    for (std::uint32_t k = start_[ball]; k < start_[ball + 1]; ++k) visit(neighbour_[k]);
+    if (more_.empty()) return;
+    const auto more = more_.find(static_cast<std::uint32_t>(ball));
+    if (more == more_.end()) return;
+    for (const std::uint32_t other : more->second) visit(other);
   }
 
   bool is_listed(std::size_t ball, std::uint32_t other) const {
@@ -126,21 +144,42 @@ class Neighbours {
     return listed;
   }
 
-  void chain_new_pairs() {
+  /// Of each ball those that the list has it with, ball by ball.
+  void note_neighbours() {
     const std::span<const BallPair> pairs = list_.pairs();
-    for (auto k = static_cast<std::uint32_t>(before_.size()); k < pairs.size(); ++k) {
-      const auto [first, second] = pairs[k];
-      before_.emplace_back(last_of_[first], last_of_[second]);
-      last_of_[first] = last_of_[second] = k;
+    start_.assign(world().size() + 1, 0);
+    for (const auto& [a, b] : pairs) {
+      ++start_[a];
+      ++start_[b];
     }
+    std::inclusive_scan(start_.begin(), start_.end(), start_.begin());
+    neighbour_.resize(2 * pairs.size());
+    for (const auto& [a, b] : pairs) {
+      neighbour_[--start_[a]] = b;
+      neighbour_[--start_[b]] = a;
+    }
+    noted_ = pairs.size();
+    more_.clear();
+  }
+
+  /// The same for those that it got since, each once.
+  void note_more_neighbours_of(std::uint32_t ball) {
+    for (const auto& [a, b] : list_.pairs().subspan(noted_)) {
+      const std::uint32_t other = a == ball ? b : a;
+      if (is_listed(ball, other)) continue;
+      more_[ball].push_back(other);
+      more_[other].push_back(ball);
+    }
+    noted_ = list_.pairs().size();
   }
 
   Balls& flights_;
   const std::vector<Plane<Dim>>& planes_;
   PairList<Dim> list_;
-  Column<std::uint32_t> last_of_;  ///< of each ball, its last pair in the list
-  /// Of each pair, the pairs before it that its first and its second ball are in.
-  Column<std::pair<std::uint32_t, std::uint32_t>> before_;
+  Column<std::uint32_t> start_;  ///< of each ball, in neighbour_
+  Column<std::uint32_t> neighbour_;
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> more_;
+  std::size_t noted_ = 0;  ///< of the list's pairs
 };
 
 }  // namespace carom

@@ -17,7 +17,7 @@ struct Parts {
   std::unique_ptr<BroadPhase<Dim>> broad_phase;
   std::unique_ptr<Flight<Dim>> flight;           ///< null: balls fly straight on
   std::unique_ptr<ClusterLaw<Dim>> cluster_law;  ///< null: sequential
-  PairSkin skin = PairSkin::kChosen;
+  Listed listed = Listed::kNear;
   std::size_t threads = 1;
   std::shared_ptr<LawFormula> law = nullptr;  ///< of a law from a file; null: the law is compiled in
 };

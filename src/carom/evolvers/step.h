@@ -46,7 +46,7 @@ class StepEvolver final : public Simulation {
         world_(scene.balls, scene.effects.spin),
         flight_(std::move(parts.flight)),
         cluster_law_(std::move(parts.cluster_law)),
-        near_(std::move(parts.broad_phase), parts.skin, threads_),
+        near_(std::move(parts.broad_phase), parts.listed, threads_),
         planes_(planes_of<kDim>(scene.walls)),
         barriers_(scene),
         surface_(scene.ball_contact),
@@ -63,12 +63,14 @@ class StepEvolver final : public Simulation {
     for (std::int64_t k = 0; k < steps; ++k) {
       begin_step(step_s);
       find_contacts();
+      land();
       resolve_impacts();
       separate();
+      take_off();
     }
   }
 
-  void snapshot(std::span<BallState> balls) const override { world_.snapshot(balls); }
+  void snapshot(std::span<BallState> balls) const override { world_.snapshot(balls, flown_s_); }
   Tally tally() const override { return account_.tally; }
 
   Settings settings() const override {
@@ -94,7 +96,6 @@ class StepEvolver final : public Simulation {
   };
 
   void begin_step(double step_s) {
-    step_s_ = step_s;
     field_speed_ = 0.0;
     if constexpr (Traits::kAccelerates) {
       threads_.in_parallel(world_.size(), [&](std::size_t begin, std::size_t end) {
@@ -106,28 +107,21 @@ class StepEvolver final : public Simulation {
       field_speed_ = step_s * largest_norm(acceleration_, threads_);
       fastest_ = largest_norm(world_.velocity, threads_);
     }
-    near_.travelled(step_s * (Traits::kAccelerates ? fastest_ : near_.cruise_mps()));
-  }
-
-  void move(std::size_t begin, std::size_t end) {
-    const std::span<double> x = world_.position.components(begin, end);
-    const std::span<const double> v = std::as_const(world_.velocity).components(begin, end);
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] += step_s_ * v[k];
+    flown_s_ += step_s;
+    near_.travelled(step_s * (Traits::kAccelerates ? fastest_ : near_.cruise().mps()));
+    const bool looks_around = !near_.holds();
+    if (Traits::kAccelerates || looks_around) {
+      world_.fly(flown_s_, threads_);
+      flown_s_ = 0.0;
+    }
+    if (looks_around) look_around();
   }
 
   void find_contacts() {
     touches_.clear();
-    const auto move = [this](std::size_t begin, std::size_t end) { this->move(begin, end); };
-    const auto test = [this](std::size_t begin, std::size_t end, std::vector<Touch>& found) {
-      this->test(begin, end, found);
-    };
-    if (near_.holds()) {
-      near_.sweep(move, touches_, test);
-    } else {
-      threads_.in_parallel(world_.size(), move);
-      look_around();
-      threads_.collect(near_.pairs().size(), touches_, test);
-    }
+    near_.template for_each_due<0>(
+        world_, 0.0, touches_, [this](std::uint32_t a, std::uint32_t b) { return overlap(a, b); },
+        [this](std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) { touch(a, b, found); });
     for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
     // The list is in an order of its own; the order of the contacts decides what happens.
     std::sort(touches_.begin(), touches_.end(),
@@ -137,23 +131,23 @@ class StepEvolver final : public Simulation {
     touches_.erase(twice, touches_.end());
   }
 
-  /// Finds the contacts among a stretch of the listed pairs.
-  void test(std::size_t begin, std::size_t end, std::vector<Touch>& found) const {
-    const std::span<const BallPair> pairs = near_.pairs();
-    for_each_passing(
-        begin, end, [&](std::size_t k) { return overlap(pairs[k].first, pairs[k].second); },
-        [&](std::size_t k) { touch(pairs[k].first, pairs[k].second, found); });
-  }
-
   void look_around() {
     near_.sort(world_);
     if constexpr (!Traits::kAccelerates) near_.measure_speeds(world_);
-    near_.build(world_, planes_, [](std::size_t) { return 0.0; });
-    for (const std::uint32_t ball : near_.fast()) hurry(ball);
+    near_.build(world_, planes_);
+    if constexpr (!Traits::kAccelerates) {
+      for (const std::uint32_t ball : near_.cruise().faster()) hurry(ball);
+    }
+  }
+
+  /// Where a ball in flight is.
+  Place place(std::size_t ball) const {
+    if constexpr (Traits::kAccelerates) return world_.position[ball];
+    return world_.place_after(flown_s_, ball);
   }
 
   bool overlap(std::uint32_t a, std::uint32_t b) const {
-    return may_meet<kDim>({world_.position[a], world_.radius[a]}, {world_.position[b], world_.radius[b]});
+    return may_meet<kDim>({place(a), world_.radius[a]}, {place(b), world_.radius[b]});
   }
 
   void touch(std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) const {
@@ -162,9 +156,9 @@ class StepEvolver final : public Simulation {
   }
 
   void touch_plane(std::uint32_t ball, std::uint32_t plane) {
-    if (planes_[plane].gap(world_.position[ball], world_.radius[ball]) > 0.0) return;
+    if (planes_[plane].gap(place(ball), world_.radius[ball]) > 0.0) return;
     if constexpr (Traits::kSheets) {
-      if (!planes_[plane].faces(world_.position[ball])) return;
+      if (!planes_[plane].faces(place(ball))) return;
     }
     if (world_.inverse_mass[ball] > 0.0) touches_.push_back({ball, plane, true});
   }
@@ -176,6 +170,49 @@ class StepEvolver final : public Simulation {
   }
 
   // --- impacts
+  // Where balls fly straight they stand in memory where they were when the list of pairs was made, or would
+  // have been: one that is hit lands, and takes off from where its new flight would have begun.
+
+  void land() {
+    if constexpr (Traits::kAccelerates) return;
+    landed_.clear();
+    for (const Touch& touch : touches_) {
+      landed_.push_back(touch.a);
+      if (!touch.plane) landed_.push_back(touch.b);
+    }
+    std::sort(landed_.begin(), landed_.end());
+    landed_.erase(std::unique(landed_.begin(), landed_.end()), landed_.end());
+    for (const std::uint32_t ball : landed_) world_.position.set(ball, place(ball));
+  }
+
+  void take_off() {
+    if constexpr (Traits::kAccelerates) return;
+    for (const std::uint32_t ball : landed_) {
+      // So far back that its place would be rounded too much.
+      if (near_.cruise().times(world_, ball) > Cruise<kDim>::kMostTimes) return land_all();
+    }
+    for (const std::uint32_t ball : landed_) world_.position.set(ball, world_.place_after(-flown_s_, ball));
+    for (const std::uint32_t ball : landed_) {
+      if (near_.cruise().times(world_, ball) > 1.0) hurry(ball);
+    }
+  }
+
+  /// Ends the list of pairs where balls have landed already that are hit.
+  void land_all() {
+    landed_at_.clear();
+    for (const std::uint32_t ball : landed_) landed_at_.push_back(world_.position[ball]);
+    world_.fly(flown_s_, threads_);
+    flown_s_ = 0.0;
+    for (std::size_t k = 0; k < landed_.size(); ++k) world_.position.set(landed_[k], landed_at_[k]);
+    near_.end();
+  }
+
+  /// Where fields act the speeds of all are measured in every step.
+  void hurry(std::uint32_t ball) {
+    near_.hurry(world_, planes_, ball,
+                {.way_m = 0.0, .cruisers_way_m = 0.0, .times = near_.cruise().times(world_, ball)},
+                [this](std::size_t any) { return place(any); });
+  }
 
   void resolve_impacts() {
     if (cluster_law_) {
@@ -200,8 +237,6 @@ class StepEvolver final : public Simulation {
     count(v_n, sweep);
     const Place impulse =
         Law::template between<kDim>(world_, touch.a, touch.b, normal, rebounding(surface_, v_n));
-    note_speed(touch.a);
-    note_speed(touch.b);
     account_.template book_pair<Law::kFriction>(world_, touch.a, touch.b, normal, impulse);
     if constexpr (Law::kFriction) {
       if (!is_fixed(touch.a) && !is_fixed(touch.b)) {
@@ -224,29 +259,14 @@ class StepEvolver final : public Simulation {
         const Place before = world_.position[touch.a];
         barriers_.meet(world_, touch.a, plane, account_);
         near_.jumped(touch.a, (world_.position[touch.a] - before).norm());
-        note_speed(touch.a);
         return true;
       }
     }
     const Place impulse =
         Law::template on_wall<kDim>(world_, touch.a, plane.normal, rebounding(wall_surface_, v_n));
-    note_speed(touch.a);
     if (is_impact(v_n, sweep)) ++account_.tally.wall_impacts;
     account_.template book_plane<Law::kFriction>(world_, touch.a, plane.normal, impulse);
     return true;
-  }
-
-  /// Where fields act the speeds of all are measured in every step.
-  void note_speed(std::uint32_t ball) {
-    if constexpr (!Traits::kAccelerates) {
-      if (near_.times_cruise(world_, ball) > 1.0) hurry(ball);
-    }
-  }
-
-  void hurry(std::uint32_t ball) {
-    const auto any = [](std::uint32_t) { return true; };
-    near_.hurry(world_, planes_, ball,
-                {.way_m = 0.0, .cruisers_way_m = 0.0, .times = near_.times_cruise(world_, ball)}, any);
   }
 
   /// Rest has no rebound.
@@ -310,10 +330,6 @@ class StepEvolver final : public Simulation {
     if (!approaching) return;
     account_.open_contacts(world_, contacts_);
     cluster_law_->resolve(world_, contacts_);
-    for (const ClosedContact<kDim>& contact : contacts_) {
-      note_speed(contact.a);
-      if (!contact.wall) note_speed(contact.b);
-    }
     account_.book_contacts(world_, contacts_);
   }
 
@@ -370,12 +386,14 @@ class StepEvolver final : public Simulation {
   Contact wall_surface_;
   Place gravity_;  ///< m/s²
   VectorColumn<kDim> acceleration_;
-  double step_s_ = 0.0;
+  double flown_s_ = 0.0;      ///< for how long balls have flown from where they stand in memory
   double field_speed_ = 0.0;  ///< m/s, what the strongest acceleration gives in a step
   double fastest_ = 0.0;      ///< m/s, no ball is faster; where fields act
   Account<kDim> account_;
 
   std::vector<Touch> touches_;
+  std::vector<std::uint32_t> landed_;
+  std::vector<Place> landed_at_;
   std::vector<std::uint32_t> root_;
   std::vector<ClosedContact<kDim>> contacts_;
 };

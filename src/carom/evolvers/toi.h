@@ -42,7 +42,7 @@ class ToiEvolver final : public Simulation {
         law_(law_of<Law>(parts)),
         flights_(scene, std::move(parts.flight), threads_),
         planes_(planes_of<kDim>(scene.walls)),
-        neighbours_(flights_, std::move(parts.broad_phase), parts.skin, planes_, threads_),
+        neighbours_(flights_, std::move(parts.broad_phase), parts.listed, planes_, threads_),
         cluster_law_(std::move(parts.cluster_law)),
         resting_(scene, flights_, neighbours_, planes_),
         barriers_(scene),
@@ -58,10 +58,9 @@ class ToiEvolver final : public Simulation {
 
   void advance(double step_s, std::int64_t steps) override {
     for (std::int64_t k = 0; k < steps; ++k) step(step_s);
-    flights_.land();
   }
 
-  void snapshot(std::span<BallState> balls) const override { world().snapshot(balls); }
+  void snapshot(std::span<BallState> balls) const override { flights_.snapshot(balls); }
   Tally tally() const override { return flights_.account().tally; }
 
   Settings settings() const override {
@@ -135,32 +134,32 @@ class ToiEvolver final : public Simulation {
     neighbours_.begin_step();
     find_meetings();
     resolve_meetings();
-    flights_.finish_step();
     neighbours_.end_step();
+    flights_.finish_step(!neighbours_.hold_for_a_step());
   }
 
   void find_meetings() {
     coming_near_.clear();
-    neighbours_.land_and_test(coming_near_,
-                              [this](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
-                                find_coming_near(begin, end, found);
-                              });
+    const double fall_m = flights_.step_s() * flights_.field_speed();
+    neighbours_.find_meeting(coming_near_,
+                             [&](std::uint32_t a, std::uint32_t b) { return come_near(a, b, fall_m); });
+    forget_twins(coming_near_);
     for (const auto& [a, b] : coming_near_) expect_pair(a, b);
+    coming_near_.clear();
     for (const auto& [ball, plane] : neighbours_.besides()) {
       const double reach_m = flights_.reach(ball).bound;
-      if (planes_[plane].gap(world().position[ball], reach_m) <= 0.0) expect_plane(ball, plane);
+      if (planes_[plane].gap(flights_.place_at_start(ball), reach_m) <= 0.0) {
+        coming_near_.emplace_back(ball, plane);
+      }
     }
+    forget_twins(coming_near_);
+    for (const auto& [ball, plane] : coming_near_) expect_plane(ball, plane);
   }
 
-  /// Of a stretch of the listed pairs, those that may meet in the step.
-  void find_coming_near(std::size_t begin, std::size_t end, std::vector<BallPair>& found) const {
-    const std::span<const BallPair> pairs = neighbours_.pairs();
-    const double fall_m = flights_.step_s() * flights_.field_speed();
-    for_each_passing(
-        begin, end, [&](std::size_t k) { return come_near(pairs[k].first, pairs[k].second, fall_m); },
-        [&](std::size_t k) {
-          if (neighbours_.may_meet_in_step(pairs[k].first, pairs[k].second)) found.push_back(pairs[k]);
-        });
+  /// Some are listed twice.
+  static void forget_twins(std::vector<BallPair>& pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   }
 
   /// A cheap question that leaves few pairs to the exact one: may these touch in the step, both flying as
@@ -169,7 +168,7 @@ class ToiEvolver final : public Simulation {
   ///   |d + w t|² = d² + 2 t d·w + t² w² >= d² + 2 h min(0, d·w).
   /// What is rounded is a few u of d² and of σ², for where 2 h |d·w| exceeds d² the answer is clear.
   bool come_near(std::size_t a, std::size_t b, double fall_m) const {
-    const Place d = world().position[b] - world().position[a];
+    const Place d = flights_.place_at_start(b) - flights_.place_at_start(a);
     const Place w = world().velocity[b] - world().velocity[a];
     const double sum = world().radius[a] + world().radius[b] + fall_m;
     const double closing = d.dot(w);
@@ -184,6 +183,12 @@ class ToiEvolver final : public Simulation {
       const Meeting next = meetings_to_come_.top();
       meetings_to_come_.pop();
       if (stale(next)) continue;
+      if (!meetings_to_come_.empty()) {
+        neighbours_.fetch(meetings_to_come_.top().a);
+        if (!meetings_to_come_.top().with_plane()) neighbours_.fetch(meetings_to_come_.top().b);
+      }
+      neighbours_.fetch_around(next.a);
+      if (!next.with_plane()) neighbours_.fetch_around(next.b);
       if (++resolved > kMostInAStep) {
         throw std::runtime_error(
             fmt::format("more than {} impacts in one step, {} s into it, of balls {} and {}", kMostInAStep,
