@@ -74,7 +74,7 @@ void expect_same_bits(const Scenario& scene, const Variant& fast, const Variant&
   for (const auto& simulation : {one.get(), other.get()}) {
     simulation->advance(kStep_s, steps / 2);
     simulation->advance(0.5 * kStep_s, steps / 4);
-    simulation->advance(kStep_s, steps / 2);
+    simulation->advance(kStep_s, steps / 4);
   }
   expect_same_bits(one->tally(), other->tally());
   EXPECT_GT(one->tally().impacts, 0);
