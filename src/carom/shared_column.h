@@ -33,8 +33,8 @@ class SharedColumn {
   }
 
   /// Place k takes what stood at order[k].
-  void reorder(std::span<const std::uint32_t> order, const Threads& threads) {
-    if (mask_ == kEach) permute(values_, order, threads);
+  void permute(std::span<const std::uint32_t> order, const Threads& threads) {
+    if (mask_ == kEach) carom::permute(values_, order, threads);
   }
 
   /// The numbers of all balls, place by place.

@@ -81,8 +81,20 @@ class VectorColumn {
   void set(std::size_t ball, const Vec<Dim>& v) { vectors_[ball] = v; }
 
   /// Place k takes what stood at order[k].
-  void reorder(std::span<const std::uint32_t> order, const Threads& threads) {
-    permute(vectors_, order, threads);
+  void permute(std::span<const std::uint32_t> order, const Threads& threads) {
+    carom::permute(vectors_, order, threads);
+  }
+
+  /// The smallest and the largest component along an axis; what is not a number counts for nothing, and of
+  /// nothing the largest is the smaller.
+  std::pair<double, double> range(int axis) const {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Vec<Dim>& v : vectors_) {
+      low = std::min(low, v[axis]);
+      high = std::max(high, v[axis]);
+    }
+    return {low, high};
   }
 
   /// The components of the balls from one up to, but without, another, ball by ball: for loops over all.
@@ -169,6 +181,14 @@ struct World {
     __builtin_prefetch(&velocity[ball]);
   }
 
+  void fetch_number(std::size_t ball) const {
+    if (!number.empty()) __builtin_prefetch(&number[ball]);
+  }
+  void fetch_pair(const std::pair<std::uint32_t, std::uint32_t>& balls) const {
+    fetch(balls.first);
+    fetch(balls.second);
+  }
+
   /// Where a ball is after it has flown straight on for so long.
   Vec<Dim> place_after(double flown_s, std::size_t ball) const {
     Vec<Dim> place;
@@ -200,13 +220,13 @@ struct World {
 
  private:
   void reorder_columns(std::span<const std::uint32_t> order, const Threads& threads) {
-    position.reorder(order, threads);
-    velocity.reorder(order, threads);
-    radius.reorder(order, threads);
-    inverse_mass.reorder(order, threads);
+    position.permute(order, threads);
+    velocity.permute(order, threads);
+    radius.permute(order, threads);
+    inverse_mass.permute(order, threads);
     if (!spins()) return;
-    spin.reorder(order, threads);
-    permute(inverse_inertia, order, threads);
+    spin.permute(order, threads);
+    carom::permute(inverse_inertia, order, threads);
   }
 };
 

@@ -15,7 +15,7 @@ namespace {
 template <int Dim>
 struct Standing {
   VectorColumn<Dim> position;  ///< m
-  std::vector<double> bound;   ///< m
+  std::vector<float> bound;    ///< m
 };
 
 template <int Dim>
@@ -27,7 +27,7 @@ Standing<Dim> standing(const Cast& cast, std::span<const BallState> states) {
   Standing<Dim> balls{VectorColumn<Dim>(there.size()), {}};
   for (std::size_t k = 0; k < there.size(); ++k) {
     balls.position.set(k, states[there[k]].position.head<Dim>());
-    balls.bound.push_back(cast[there[k]]->radius);
+    balls.bound.push_back(rounded_up(cast[there[k]]->radius));
   }
   return balls;
 }

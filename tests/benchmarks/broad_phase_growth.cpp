@@ -30,7 +30,7 @@ constexpr std::size_t kMostByBruteForce = 10'000;
 template <int Dim>
 struct Gas {
   VectorColumn<Dim> position;  ///< m
-  std::vector<double> bound;   ///< m
+  std::vector<float> bound;    ///< m
 };
 
 /// Balls anywhere in a cube, with bounds from 1/ratio to 1 m, every octave of sizes as common as every other.
@@ -42,7 +42,7 @@ Gas<Dim> gas(std::size_t count, double ratio) {
   for (std::size_t i = 0; i < count; ++i) {
     const double bound = std::pow(ratio, -random.uniform());
     volume += (Dim == 2 ? 1.0 : 4.0 / 3.0) * std::numbers::pi * std::pow(bound, Dim);
-    result.bound.push_back(bound);
+    result.bound.push_back(rounded_up(bound));
   }
   const double side = std::pow(volume / kPacking, 1.0 / Dim);
   for (std::size_t i = 0; i < count; ++i) {

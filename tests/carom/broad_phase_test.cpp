@@ -35,7 +35,7 @@ TYPED_TEST_SUITE(BroadPhaseTwin, Cases);
 template <int Dim>
 struct Cloud {
   VectorColumn<Dim> position;
-  std::vector<double> bound;
+  std::vector<float> bound;
 };
 
 /// Balls all over a cube, some on the seams of any grid; bounds spread over `ratio`.
@@ -51,7 +51,7 @@ Cloud<Dim> cloud(std::uint64_t seed, std::size_t count, double ratio) {
     result.position.set(i, x);
     // Small ones are common and large ones rare, so that not everything overlaps.
     const double draw = random.uniform();
-    result.bound.push_back(0.5 / (1.0 + draw * (ratio - 1.0)));
+    result.bound.push_back(rounded_up(0.5 / (1.0 + draw * (ratio - 1.0))));
   }
   return result;
 }
@@ -117,7 +117,7 @@ TYPED_TEST(BroadPhaseTwin, FindsSameNeighbours_AsBruteForce_AfterBoundsGrew) {
     fast.build(balls.position, balls.bound);
     twin.build(balls.position, balls.bound);
     for (std::size_t ball = 0; ball < 200; ball += 7) {
-      balls.bound[ball] *= ball % 2 == 0 ? 3.0 : 40.0;
+      balls.bound[ball] *= ball % 2 == 0 ? 3.0F : 40.0F;
       fast.bound_grew(ball);
       for (const std::size_t each : {ball, ball + 1}) {
         EXPECT_EQ(near<TypeParam>(fast, balls, each), near<TypeParam>(twin, balls, each)) << "ball " << each;
@@ -164,7 +164,7 @@ TYPED_TEST(BroadPhaseTwin, FindsSamePairs_AsBruteForce_AllOnALine) {
 /// Reaches that touch exactly, in numbers that doubles hold: |x_i - x_j| = bound_i + bound_j.
 TYPED_TEST(BroadPhaseTwin, FindsSamePairs_AsBruteForce_ExactlyTouching) {
   constexpr int kDim = TypeParam::kDim;
-  Cloud<kDim> balls{VectorColumn<kDim>(400), std::vector<double>(400, 0.5)};
+  Cloud<kDim> balls{VectorColumn<kDim>(400), std::vector<float>(400, 0.5F)};
   for (std::size_t i = 0; i < 400; ++i) {
     const std::size_t row = i / 20;
     Vec<kDim> place = Vec<kDim>::Constant(1e6);
@@ -178,8 +178,8 @@ TYPED_TEST(BroadPhaseTwin, FindsSamePairs_AsBruteForce_ExactlyTouching) {
 TYPED_TEST(BroadPhaseTwin, FindsSamePairs_AsBruteForce_OneGiantAmongThousandsOfDwarfs) {
   constexpr int kDim = TypeParam::kDim;
   Cloud<kDim> balls = cloud<kDim>(9, 3000, 1.0);
-  std::fill(balls.bound.begin(), balls.bound.end(), 0.005);
-  balls.bound[1234] = 5.0;
+  std::fill(balls.bound.begin(), balls.bound.end(), 0.005F);
+  balls.bound[1234] = 5.0F;
   EXPECT_GT(expect_same_as_twin<TypeParam>(balls), 100U);
 }
 
@@ -232,7 +232,7 @@ TYPED_TEST_SUITE(BroadPhaseGrowth, Linear);
 /// Pair tests for equal balls that fill a tenth of a cube.
 template <class Counted, int Dim>
 double pair_tests(std::size_t count) {
-  Cloud<Dim> balls{VectorColumn<Dim>(count), std::vector<double>(count, 0.5)};
+  Cloud<Dim> balls{VectorColumn<Dim>(count), std::vector<float>(count, 0.5F)};
   const double volume = static_cast<double>(count) * (Dim == 2 ? 0.25 : 1.0 / 6.0) * std::numbers::pi;
   const double side = std::pow(10.0 * volume, 1.0 / Dim);
   Random random(count);

@@ -14,7 +14,7 @@ TEST(SharedColumn, HoldsWhatAnArrayHolds_AlikeAndNot) {
     std::vector<double> array(4, 0.5);
     if (different < array.size()) array[different] = 0.25;
     SharedColumn column(array.size(), [&](std::size_t i) { return array[i]; });
-    column.reorder(order, Threads());
+    column.permute(order, Threads());
     column.set(1, 0.5);
     const std::vector<double> expected = {array[order[0]], 0.5, array[order[2]], array[order[3]]};
     for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(column[i], expected[i]) << different;

@@ -35,8 +35,7 @@ class BroadPhase {
 
   /// Notes where the balls stand. Positions and bounds are columns of the caller's: the positions stay as
   /// they are until the pairs are found, the bounds may grow later.
-  virtual void build(const VectorColumn<Dim>& position, std::span<const double> bound,
-                     const Threads& threads) = 0;
+  virtual void build(const VectorColumn<Dim>& position, Bounds bound, const Threads& threads) = 0;
 
   /// Replaces `pairs` by every pair that may meet, each once. @pre nothing has changed since build()
   virtual void find_pairs(Column<BallPair>& pairs, const Threads& threads) const = 0;
@@ -60,8 +59,7 @@ class BroadPhaseOf final : public BroadPhase<Dim> {
  public:
   std::string_view name() const override { return Visitor::kName; }
 
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound,
-             const Threads& threads) override {
+  void build(const VectorColumn<Dim>& position, Bounds bound, const Threads& threads) override {
     if constexpr (requires { visitor_.build(position, bound, threads); }) {
       visitor_.build(position, bound, threads);
     } else {

@@ -17,7 +17,7 @@ class BruteForce {
 
   /// Notes where the balls stand. Positions and bounds are columns of the caller's: the positions stay as
   /// they are until the pairs are found, the bounds may grow later.
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound) {
+  void build(const VectorColumn<Dim>& position, Bounds bound) {
     position_ = &position;
     bound_ = bound;
   }
@@ -52,7 +52,7 @@ class BruteForce {
   }
 
   const VectorColumn<Dim>* position_ = nullptr;  ///< where the balls stand
-  std::span<const double> bound_;
+  Bounds bound_;
   [[no_unique_address]] Count count_;
 };
 

@@ -13,7 +13,7 @@ class NobodyMeets {
  public:
   static constexpr std::string_view kName = "none";
 
-  void build(const VectorColumn<Dim>& /*position*/, std::span<const double> /*bound*/) {}
+  void build(const VectorColumn<Dim>& /*position*/, Bounds /*bound*/) {}
   template <class Visit>
   void for_each_pair(Visit&& /*visit*/) const {}
   void bound_grew(std::size_t /*ball*/) {}

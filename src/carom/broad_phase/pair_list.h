@@ -5,13 +5,16 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "carom/broad_phase/broad_phase.h"
 #include "carom/broad_phase/cruise.h"
 #include "carom/broad_phase/due_pairs.h"
+#include "carom/broad_phase/flying_pairs.h"
 #include "carom/broad_phase/for_each_passing.h"
+#include "carom/broad_phase/listed_neighbours.h"
 #include "carom/plane.h"
 #include "carom/world.h"
 
@@ -26,7 +29,9 @@ enum class Listed { kNear, kAll };
 /// s. Until some ball has moved by s/2 no other pair can touch, for two balls come nearer to each other by at
 /// most s. So the list is made anew only when the longest way that a ball may have gone comes to s/2; and
 /// that way is known from a speed, without a look at any ball. Source: L. Verlet, Phys. Rev. 159, 98 (1967).
-/// For the same reason a pair with a gap g between its balls is not due before balls may have gone g/2.
+/// Which of the listed pairs are due in a step is known as well. Where fields act a pair with a gap g between
+/// its balls is not due before balls may have gone g/2, for the same reason; where none do, not before it has
+/// come so far that they touch if neither is hit, and whom a ball is listed with that was hit is noted.
 ///
 /// Were it the speed of the fastest ball, lists would live the shorter the more balls there are, for the sake
 /// of a few. So ways are counted at a cruising speed that few balls exceed; and each of these adds to the
@@ -37,7 +42,7 @@ enum class Listed { kNear, kAll };
 /// is the slow twin, and tests hold both to the same bits. How long a list lives does not depend on it, nor
 /// on the broad phase, the order of the balls in memory, or the number of threads, for it decides in which
 /// pieces balls that fly straight are moved.
-template <int Dim>
+template <int Dim, bool kFieldsAct>
 class PairList {
  public:
   PairList(std::unique_ptr<BroadPhase<Dim>> broad_phase, Listed listed, const Threads& threads)
@@ -46,8 +51,11 @@ class PairList {
   /// Whether balls can touch only in pairs that the list has while those that cruise go this much farther, m.
   bool holds(double way_m = 0.0) const { return gone_m(way_m) <= enough_m_; }
 
-  /// No ball that cruises has gone farther than this, m.
-  void travelled(double way_m) { travelled_m_ += way_m * kRoundUp + rounding_m_; }
+  /// No ball that cruises has gone farther than this, m, in so long.
+  void travelled(double way_m, double duration_s) {
+    travelled_m_ += way_m * kRoundUp + rounding_m_;
+    time_s_ += duration_s;
+  }
 
   /// A ball was put this far away, m, beside what it travels.
   void jumped(std::size_t ball, double way_m) {
@@ -73,6 +81,7 @@ class PairList {
     broad_phase_->hand_over_order(order);
     if (order.empty()) return;
     pairs_ = {};
+    neighbours_ = {};
     world.reorder(order, threads_);
   }
 
@@ -86,22 +95,38 @@ class PairList {
   bool may_last(double way_m) const { return 2.0 * way_m <= next_half_skin_m_; }
 
   /// Makes the list. @pre balls stand in memory where they are
-  void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
-    build_for_a_step(world, planes, [](std::size_t) { return 0.0; });
-    if (listed_ == Listed::kNear) sort_by_stages(world);
+  /// @param step_s  how long steps will be
+  void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, double step_s) {
+    build_for_a_step(world, planes, step_s, [](std::size_t) { return 0.0; });
+    if constexpr (kFieldsAct) {
+      if (listed_ == Listed::kNear) sort_by_stages(world);
+    }
   }
 
   /// The same for a step in which balls may go farther than for the list to last.
   /// @param way_m  of each ball, how far the list must hold at least, m
   template <class Way>
-  void build_for_a_step(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, const Way& way_m) {
+  void build_for_a_step(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, double step_s,
+                        const Way& way_m) {
     find_pairs(world, way_m);
     find_planes(world, planes);
     forget_ways();
     choose_skin(world);
     if (listed_ == Listed::kAll) list_all(world.size());
+    if constexpr (!kFieldsAct) {
+      if (listed_ == Listed::kNear) {
+        pairs_.begin(world, step_s, std::max(step_s, half_skin_m_ / cruise_.mps()), rounding_m_, threads_);
+      }
+      note_neighbours(world);
+    }
     ++builds_in_this_order_;
   }
+
+  /// After build(): notes whom each ball is listed with. Where no fields act that is done already.
+  void note_neighbours(const World<Dim>& world) { neighbours_.note(world.size(), pairs_.all(), threads_); }
+
+  /// Whom a ball may touch while the list lives. @pre they are noted
+  const ListedNeighbours& neighbours() const { return neighbours_; }
 
   /// How far a ball goes at most, m, while those that cruise go so far; and from then on, so many times as
   /// far as they.
@@ -122,7 +147,7 @@ class PairList {
     const double left_m = std::max(0.0, half_skin_m_ - travelled_m_ - haste.cruisers_way_m);
     const double later_m = enough_m_ == kNothingHolds ? 0.0 : haste.times * left_m;
     const double soon_m = gone(world, ball) + haste.way_m;
-    const double bound = world.radius[ball] + (soon_m + later_m) * kRoundUp + 2.0 * rounding_m_;
+    const float bound = rounded_up(world.radius[ball] + (soon_m + later_m) * kRoundUp + 2.0 * rounding_m_);
     if (!(bound > bound_[ball])) return;
     bound_[ball] = bound;
     if (++hurried_ > Cruise<Dim>::few(world.size())) end();
@@ -137,30 +162,38 @@ class PairList {
   }
 
   /// Calls at(a, b, found) for pairs that pass the test, by may_touch(a, b), of those that may touch while
-  /// balls that cruise go this much farther, m. Some come twice.
+  /// balls that cruise go this much farther, in so long. Some come twice.
   /// @tparam kAhead  so many pairs before one is tested its balls are fetched from memory, if that pays
   template <std::size_t kAhead, class Found, class Test, class At>
-  void for_each_due(const World<Dim>& world, double way_m, Found& found, const Test& may_touch,
-                    const At& at) const {
-    const std::span<const BallPair> pairs = pairs_.all();
+  void for_each_due(const World<Dim>& world, double way_m, double duration_s, Found& found,
+                    const Test& may_touch, const At& at) {
+    std::span<const BallPair> pairs = pairs_.all();
     const auto test = [&](std::size_t begin, std::size_t end, Found& own) {
       for_each_passing(
           begin, end,
           [&](std::size_t k) {
-            if constexpr (kAhead > 0) {
-              const auto [a, b] = pairs[std::min(k + kAhead, pairs.size() - 1)];
-              world.fetch(a);
-              world.fetch(b);
-            }
+            if constexpr (kAhead > 0) fetch(world, pairs[std::min(k + kAhead, pairs.size() - 1)]);
             return may_touch(pairs[k].first, pairs[k].second);
           },
           [&](std::size_t k) { at(pairs[k].first, pairs[k].second, own); });
     };
-    pairs_.test(stage_at(gone_m(way_m) + 2.0 * rounding_m_), threads_, found, test);
+    if constexpr (kFieldsAct) {
+      pairs_.test(stage_at(gone_m(way_m) + 2.0 * rounding_m_), threads_, found, test);
+    } else {
+      if (listed_ == Listed::kNear) pairs = pairs_.take(time_s_ + duration_s);
+      threads_.collect(pairs.size(), found, test);
+    }
   }
 
-  /// Two balls that may touch; some stand here twice.
-  std::span<const BallPair> pairs() const { return pairs_.all(); }
+  /// After a step at whose end the list holds: when pairs are due that were due in it, and those of balls
+  /// that have been hit.
+  /// @param flown_s  how long balls have flown from where they stand in memory
+  void expect_anew(const World<Dim>& world, double flown_s,
+                   std::span<const std::uint32_t> hit) requires(!kFieldsAct) {
+    if (listed_ == Listed::kAll) return;
+    pairs_.expect_anew(world, time_s_, flown_s, hit, neighbours_, threads_);
+  }
+
   /// A ball and a plane that may touch; some stand here twice.
   std::span<const BallPair> besides() const { return besides_; }
 
@@ -192,6 +225,15 @@ class PairList {
                : DuePairs::kStages - 1;
   }
 
+  /// Has the processor load what is asked about two balls when they are due. Where no fields act, they touch
+  /// as a rule.
+  static void fetch(const World<Dim>& world, const BallPair& pair) {
+    for (const std::uint32_t ball : {pair.first, pair.second}) {
+      world.fetch(ball);
+      if constexpr (!kFieldsAct) world.fetch_number(ball);
+    }
+  }
+
   /// Makes lists that nobody uses, until one has the skin that it should have had.
   void find_first_skin(const World<Dim>& world) {
     double radii = 0.0;
@@ -213,7 +255,7 @@ class PairList {
     bound_.resize(world.size());
     threads_.in_parallel(world.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        bound_[i] = world.radius[i] + std::max(half_skin_m_, way_m(i));
+        bound_[i] = rounded_up(world.radius[i] + std::max(half_skin_m_, way_m(i)));
       }
     });
     broad_phase_->build(world.position, bound_, threads_);
@@ -270,7 +312,8 @@ class PairList {
       if (other == ball) continue;
       const double allowed_m = bound_[other] - world.radius[other];  // and no farther from where it was
       if (!may_meet(reach, {place_of(other), bound_[other] + allowed_m})) continue;
-      pairs_.add(static_cast<std::uint32_t>(ball), other);
+      if constexpr (kFieldsAct) pairs_.add(static_cast<std::uint32_t>(ball), other);
+      if (neighbours_.are_noted()) neighbours_.add(static_cast<std::uint32_t>(ball), other);
     }
   }
 
@@ -292,10 +335,11 @@ class PairList {
   /// Ways are counted from here. What is rounded, a few u = ε/2 each: the coordinates in every step; and the
   /// tests of distances, here and where balls touch, which may differ by 8 u of the coordinates and bounds.
   void forget_ways() {
-    const double widest = threads_.largest(bound_.size(), [&](std::size_t i) { return bound_[i]; });
+    const double widest = threads_.largest(bound_.size(), [&](std::size_t i) { return double{bound_[i]}; });
     rounding_m_ = 4.0 * kEpsilon * (farthest_m_ + widest + Cruise<Dim>::kMostTimes * half_skin_m_);
     enough_m_ = half_skin_m_ - 2.0 * rounding_m_;
     travelled_m_ = 0.0;
+    time_s_ = 0.0;
     hurried_ = 0;
     farthest_jump_m_ = 0.0;
     std::fill(jumps_m_.begin(), jumps_m_.end(), 0.0F);
@@ -310,13 +354,15 @@ class PairList {
   Cruise<Dim> cruise_;
   double enough_m_ = kNothingHolds;  ///< how far a ball that cruises may go until the list is worth nothing
   double travelled_m_ = 0.0;
+  double time_s_ = 0.0;      ///< since the list was made
   double rounding_m_ = 0.0;  ///< of coordinates, in a step
   double farthest_m_ = 0.0;  ///< no coordinate is larger
   std::size_t hurried_ = 0;  ///< times that a ball added pairs
   double farthest_jump_m_ = 0.0;
   Column<float> jumps_m_;  ///< of each ball; empty before the first
-  Column<double> bound_;   ///< m, radius and how far the ball may get from where it was
-  DuePairs pairs_;
+  Column<float> bound_;    ///< m, radius and how far the ball may get from where it was
+  std::conditional_t<kFieldsAct, DuePairs, FlyingPairs<Dim>> pairs_;
+  ListedNeighbours neighbours_;
   std::vector<BallPair> besides_;
   std::vector<std::uint32_t> near_;
   int builds_in_this_order_ = kBuildsInAnOrder;

@@ -1,8 +1,24 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
+#include <span>
+
 #include "carom/world.h"
 
 namespace carom {
+
+/// Of each ball, m: how far from where it stood it may be. Floats, for their rounding costs few pairs, and a
+/// million of doubles four megabytes.
+using Bounds = std::span<const float>;
+
+/// The least of the floats that are not less.
+inline float rounded_up(double value) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  if (value > std::numeric_limits<float>::max()) return kInfinity;
+  const auto nearest = static_cast<float>(value);
+  return nearest < value ? std::nextafter(nearest, kInfinity) : nearest;
+}
 
 /// Where a ball can be within a step, or while a list of pairs lives: no farther than `bound` metres from
 /// `centre`.

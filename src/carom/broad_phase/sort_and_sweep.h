@@ -25,7 +25,7 @@ class SortAndSweep {
  public:
   static constexpr std::string_view kName = "sort-and-sweep";
 
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound) {
+  void build(const VectorColumn<Dim>& position, Bounds bound) {
     bound_ = bound;
     growth_ = 0.0;
     axis_ = axis_of_largest_spread(position);
@@ -80,12 +80,7 @@ class SortAndSweep {
     int best = 0;
     double largest = 0.0;
     for (int axis = 0; axis < Dim; ++axis) {
-      double low = kEndless;
-      double high = -kEndless;
-      for (std::size_t i = 0; i < position.size(); ++i) {
-        low = std::min(low, position[i][axis]);
-        high = std::max(high, position[i][axis]);
-      }
+      const auto [low, high] = position.range(axis);
       if (!(high - low > largest)) continue;
       largest = high - low;
       best = axis;
@@ -134,7 +129,7 @@ class SortAndSweep {
     visit(std::min(i, j), std::max(i, j));
   }
 
-  std::span<const double> bound_;
+  Bounds bound_;
   int axis_ = 0;
   std::vector<Start> start_;  ///< at build(), sorted; all that follows is in this order
   std::vector<Item> items_;

@@ -31,7 +31,7 @@ class Tree {
  public:
   static constexpr std::string_view kName = Dim == 2 ? "quadtree" : "octree";
 
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound) {
+  void build(const VectorColumn<Dim>& position, Bounds bound) {
     bound_ = bound;
     nodes_.clear();
     take_balls(position);
@@ -303,7 +303,7 @@ class Tree {
     return may_meet(a, b);
   }
 
-  std::span<const double> bound_;
+  Bounds bound_;
   Column<Item> items_;  ///< the balls, node by node
   Column<Node> nodes_;
   Column<std::uint32_t> place_of_;  ///< of each ball in items_

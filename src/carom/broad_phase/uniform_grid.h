@@ -26,7 +26,7 @@ class UniformGrid {
  public:
   static constexpr std::string_view kName = "uniform-grid";
 
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound) {
+  void build(const VectorColumn<Dim>& position, Bounds bound) {
     bound_ = bound;
     choose_classes();
     sort_into_buckets(position);
@@ -234,7 +234,7 @@ class UniformGrid {
     return row[0] <= cell[0] && cell[0] <= block.high[0];
   }
 
-  std::span<const double> bound_;
+  Bounds bound_;
   std::vector<Level> levels_;
   std::vector<std::uint32_t> level_;  ///< of each ball
   std::vector<Entry> entries_;        ///< the balls, bucket by bucket

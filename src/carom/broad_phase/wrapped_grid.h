@@ -28,11 +28,10 @@ class WrappedGrid {
  public:
   static constexpr std::string_view kName = "wrapped-grid";
 
-  void build(const VectorColumn<Dim>& position, std::span<const double> bound,
-             const Threads& threads = Threads()) {
+  void build(const VectorColumn<Dim>& position, Bounds bound, const Threads& threads = Threads()) {
     position_ = &position;
     bound_ = bound;
-    largest_bound_ = threads.largest(bound.size(), [&](std::size_t ball) { return bound[ball]; });
+    largest_bound_ = threads.largest(bound.size(), [&](std::size_t ball) { return double{bound[ball]}; });
     cells_per_m_ = 0.5 / (largest_bound_ * (1.0 + kSlack));
     choose_shape();
     sort_into_cells(threads);
@@ -65,7 +64,7 @@ class WrappedGrid {
     }
   }
 
-  void bound_grew(std::size_t ball) { largest_bound_ = std::max(largest_bound_, bound_[ball]); }
+  void bound_grew(std::size_t ball) { largest_bound_ = std::max(largest_bound_, double{bound_[ball]}); }
 
   /// All balls in the cells around: where in its cell a ball stood is not kept.
   template <class Visit>
@@ -265,7 +264,7 @@ class WrappedGrid {
   }
 
   const VectorColumn<Dim>* position_ = nullptr;
-  std::span<const double> bound_;
+  Bounds bound_;
   double largest_bound_ = 0.0;  ///< m
   double cells_per_m_ = 0.0;
   std::array<std::int32_t, Dim> shape_{};  ///< cells along each axis

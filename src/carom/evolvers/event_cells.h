@@ -135,12 +135,7 @@ class EventCells {
     const double thickness = 2.0 * *std::max_element(radius.begin(), radius.end());
     volume_ = 1.0;
     for (int axis = 0; axis < Dim; ++axis) {
-      double low = position[0][axis];
-      double high = low;
-      for (std::size_t i = 1; i < position.size(); ++i) {
-        low = std::min(low, position[i][axis]);
-        high = std::max(high, position[i][axis]);
-      }
+      const auto [low, high] = position.range(axis);
       origin_[axis] = low;
       extent_[axis] = std::max(high - low, thickness);
       volume_ *= extent_[axis];

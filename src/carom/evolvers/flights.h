@@ -81,6 +81,7 @@ class Flights {
     std::sort(records_.begin(), records_.end(),
               [this](const Record& a, const Record& b) { return world_.before(a.ball, b.ball); });
     arrivals_.clear();
+    touched_in_step_.clear();
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const std::size_t ball = records_[k].ball;
       touched_[ball] = static_cast<std::uint32_t>(k);
@@ -97,6 +98,7 @@ class Flights {
       const auto& [x, v] = arrivals_[k];
       world_.velocity.set(records_[k].ball, v);
       world_.position.set(records_[k].ball, flown_s_ == 0.0 ? x : Vec<Dim>(x - flown_s_ * v));
+      touched_in_step_.push_back(records_[k].ball);
       forget(records_[k].ball);
     }
     records_.clear();
@@ -107,6 +109,10 @@ class Flights {
     world_.fly(flown_s_, threads_);
     flown_s_ = 0.0;
   }
+
+  /// Between steps: how long balls have flown since they landed, and whose flights were not the step's.
+  double flown_s() const { return flown_s_; }
+  std::span<const std::uint32_t> touched() const { return touched_in_step_; }
 
   void snapshot(std::span<BallState> balls) const { world_.snapshot(balls, flown_s_); }
 
@@ -307,6 +313,7 @@ class Flights {
   Column<std::uint32_t> touched_;  ///< of each ball, which of the records is its
   std::vector<Record> records_;
   std::vector<Arrival> arrivals_;
+  std::vector<std::uint32_t> touched_in_step_;
   double flown_s_ = 0.0;  ///< how long balls have flown by the start of the step since they landed
   VectorColumn<Dim> acceleration_;
   VectorColumn<Dim> force_;  ///< N, by the walls and immovable balls that bear the ball

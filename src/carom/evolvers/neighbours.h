@@ -2,10 +2,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -43,20 +41,29 @@ class Neighbours {
     flights_.land();
     if constexpr (!Balls::kFieldsAct) list_.measure_speeds(world());
     if (list_.may_last(longest_path())) {
-      list_.build(world(), planes_);
+      list_.build(world(), planes_, flights_.step_s());
     } else {
-      list_.build_for_a_step(world(), planes_, [this](std::size_t ball) {
+      list_.build_for_a_step(world(), planes_, flights_.step_s(), [this](std::size_t ball) {
         return flights_.path_bound(ball, flights_.step_s());
       });
     }
-    note_neighbours();
-    if constexpr (Balls::kFieldsAct) return;
-    for (const std::uint32_t ball : list_.cruise().faster()) {
-      hurry(ball, flights_.path_bound(ball, flights_.step_s()));
+    if constexpr (Balls::kFieldsAct) {
+      list_.note_neighbours(world());
+    } else {
+      for (const std::uint32_t ball : list_.cruise().faster()) {
+        hurry(ball, flights_.path_bound(ball, flights_.step_s()));
+      }
+      list_.expect_anew(world(), 0.0, list_.cruise().faster());
     }
   }
 
-  void end_step() { list_.travelled(longest_path()); }
+  /// @pre the flights of the step have ended, but for the balls' landing
+  void end_step() { list_.travelled(longest_path(), flights_.step_s()); }
+
+  /// Between steps, when balls have landed or the list holds: asks anew when those meet that were touched.
+  void expect_anew(bool holds) requires(!Balls::kFieldsAct) {
+    holds ? list_.expect_anew(world(), flights_.flown_s(), flights_.touched()) : list_.end();
+  }
 
   /// A ball was put this far away, m.
   void jumped(std::size_t ball, double way_m) { list_.jumped(ball, way_m); }
@@ -64,10 +71,10 @@ class Neighbours {
   /// At the step's start: appends all pairs that may meet in it, some twice, if the cheap question
   /// come_near(a, b) does not say that they do not.
   template <class Question>
-  void find_meeting(std::vector<BallPair>& meeting, const Question& come_near) const {
+  void find_meeting(std::vector<BallPair>& meeting, const Question& come_near) {
     constexpr std::size_t kAhead = 32;
     list_.template for_each_due<kAhead>(
-        world(), longest_path(), meeting, come_near,
+        world(), longest_path(), flights_.step_s(), meeting, come_near,
         [this](std::uint32_t a, std::uint32_t b, std::vector<BallPair>& found) {
           if (may_meet_in_step(a, b)) found.emplace_back(a, b);
         });
@@ -83,16 +90,17 @@ class Neighbours {
   /// Has the processor load what is soon asked about a ball, and about its neighbours.
   void fetch(std::size_t ball) const {
     flights_.fetch(ball);
-    __builtin_prefetch(&start_[ball]);
+    list_.neighbours().fetch(static_cast<std::uint32_t>(ball));
   }
   void fetch_around(std::size_t ball) const {
-    for (std::uint32_t k = start_[ball]; k < start_[ball + 1]; ++k) flights_.fetch(neighbour_[k]);
+    list_.neighbours().for_each(static_cast<std::uint32_t>(ball),
+                                [this](std::uint32_t other) { flights_.fetch(other); });
   }
 
   /// Every other ball that this one may meet in the step, in any order.
   void find_near(std::size_t ball, std::vector<std::uint32_t>& others) const {
     others.clear();
-    for_each_listed(ball, [&](std::uint32_t other) {
+    list_.neighbours().for_each(static_cast<std::uint32_t>(ball), [&](std::uint32_t other) {
       if (may_meet_in_step(ball, other)) others.push_back(other);
     });
   }
@@ -126,60 +134,11 @@ class Neighbours {
     const double times = Balls::kFieldsAct ? 1.0 : list_.cruise().times(world(), ball);
     list_.hurry(world(), planes_, ball, {.way_m = way_m, .cruisers_way_m = longest_path(), .times = times},
                 [this](std::size_t any) { return flights_.place(any); });
-    note_more_neighbours_of(static_cast<std::uint32_t>(ball));
-  }
-
-  template <class Visit>
-  void for_each_listed(std::size_t ball, const Visit& visit) const {
-    for (std::uint32_t k = start_[ball]; k < start_[ball + 1]; ++k) visit(neighbour_[k]);
-    if (more_.empty()) return;
-    const auto more = more_.find(static_cast<std::uint32_t>(ball));
-    if (more == more_.end()) return;
-    for (const std::uint32_t other : more->second) visit(other);
-  }
-
-  bool is_listed(std::size_t ball, std::uint32_t other) const {
-    bool listed = false;
-    for_each_listed(ball, [&](std::uint32_t each) { listed = listed || each == other; });
-    return listed;
-  }
-
-  /// Of each ball those that the list has it with, ball by ball.
-  void note_neighbours() {
-    const std::span<const BallPair> pairs = list_.pairs();
-    start_.assign(world().size() + 1, 0);
-    for (const auto& [a, b] : pairs) {
-      ++start_[a];
-      ++start_[b];
-    }
-    std::inclusive_scan(start_.begin(), start_.end(), start_.begin());
-    neighbour_.resize(2 * pairs.size());
-    for (const auto& [a, b] : pairs) {
-      neighbour_[--start_[a]] = b;
-      neighbour_[--start_[b]] = a;
-    }
-    noted_ = pairs.size();
-    more_.clear();
-  }
-
-  /// The same for those that it got since, each once.
-  void note_more_neighbours_of(std::uint32_t ball) {
-    for (const auto& [a, b] : list_.pairs().subspan(noted_)) {
-      const std::uint32_t other = a == ball ? b : a;
-      if (is_listed(ball, other)) continue;
-      more_[ball].push_back(other);
-      more_[other].push_back(ball);
-    }
-    noted_ = list_.pairs().size();
   }
 
   Balls& flights_;
   const std::vector<Plane<Dim>>& planes_;
-  PairList<Dim> list_;
-  Column<std::uint32_t> start_;  ///< of each ball, in neighbour_
-  Column<std::uint32_t> neighbour_;
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> more_;
-  std::size_t noted_ = 0;  ///< of the list's pairs
+  PairList<Dim, Balls::kFieldsAct> list_;
 };
 
 }  // namespace carom

@@ -108,19 +108,19 @@ class StepEvolver final : public Simulation {
       fastest_ = largest_norm(world_.velocity, threads_);
     }
     flown_s_ += step_s;
-    near_.travelled(step_s * (Traits::kAccelerates ? fastest_ : near_.cruise().mps()));
+    near_.travelled(step_s * (Traits::kAccelerates ? fastest_ : near_.cruise().mps()), step_s);
     const bool looks_around = !near_.holds();
     if (Traits::kAccelerates || looks_around) {
       world_.fly(flown_s_, threads_);
       flown_s_ = 0.0;
     }
-    if (looks_around) look_around();
+    if (looks_around) look_around(step_s);
   }
 
   void find_contacts() {
     touches_.clear();
-    near_.template for_each_due<0>(
-        world_, 0.0, touches_, [this](std::uint32_t a, std::uint32_t b) { return overlap(a, b); },
+    near_.template for_each_due<Traits::kAccelerates ? 0 : 32>(
+        world_, 0.0, 0.0, touches_, [this](std::uint32_t a, std::uint32_t b) { return overlap(a, b); },
         [this](std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) { touch(a, b, found); });
     for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
     // The list is in an order of its own; the order of the contacts decides what happens.
@@ -131,12 +131,13 @@ class StepEvolver final : public Simulation {
     touches_.erase(twice, touches_.end());
   }
 
-  void look_around() {
+  void look_around(double step_s) {
     near_.sort(world_);
     if constexpr (!Traits::kAccelerates) near_.measure_speeds(world_);
-    near_.build(world_, planes_);
+    near_.build(world_, planes_, step_s);
     if constexpr (!Traits::kAccelerates) {
       for (const std::uint32_t ball : near_.cruise().faster()) hurry(ball);
+      near_.expect_anew(world_, 0.0, near_.cruise().faster());
     }
   }
 
@@ -194,6 +195,9 @@ class StepEvolver final : public Simulation {
     for (const std::uint32_t ball : landed_) world_.position.set(ball, world_.place_after(-flown_s_, ball));
     for (const std::uint32_t ball : landed_) {
       if (near_.cruise().times(world_, ball) > 1.0) hurry(ball);
+    }
+    if constexpr (!Traits::kAccelerates) {
+      if (near_.holds()) near_.expect_anew(world_, flown_s_, landed_);
     }
   }
 
@@ -379,7 +383,7 @@ class StepEvolver final : public Simulation {
   World<kDim> world_;
   std::unique_ptr<Flight<kDim>> flight_;
   std::unique_ptr<ClusterLaw<kDim>> cluster_law_;
-  PairList<kDim> near_;
+  PairList<kDim, Traits::kAccelerates> near_;
   std::vector<Plane<kDim>> planes_;
   Barriers<kDim> barriers_;
   Contact surface_;

@@ -135,7 +135,9 @@ class ToiEvolver final : public Simulation {
     find_meetings();
     resolve_meetings();
     neighbours_.end_step();
-    flights_.finish_step(!neighbours_.hold_for_a_step());
+    const bool hold = neighbours_.hold_for_a_step();
+    flights_.finish_step(!hold);
+    if constexpr (!Traits::kAccelerates) neighbours_.expect_anew(hold);
   }
 
   void find_meetings() {
@@ -183,12 +185,7 @@ class ToiEvolver final : public Simulation {
       const Meeting next = meetings_to_come_.top();
       meetings_to_come_.pop();
       if (stale(next)) continue;
-      if (!meetings_to_come_.empty()) {
-        neighbours_.fetch(meetings_to_come_.top().a);
-        if (!meetings_to_come_.top().with_plane()) neighbours_.fetch(meetings_to_come_.top().b);
-      }
-      neighbours_.fetch_around(next.a);
-      if (!next.with_plane()) neighbours_.fetch_around(next.b);
+      fetch_for(next);
       if (++resolved > kMostInAStep) {
         throw std::runtime_error(
             fmt::format("more than {} impacts in one step, {} s into it, of balls {} and {}", kMostInAStep,
@@ -207,6 +204,17 @@ class ToiEvolver final : public Simulation {
           break;
       }
     }
+  }
+
+  /// Has the processor load what this meeting asks for around its balls, and what the next one will of its
+  /// own.
+  void fetch_for(const Meeting& meeting) const {
+    neighbours_.fetch_around(meeting.a);
+    if (!meeting.with_plane()) neighbours_.fetch_around(meeting.b);
+    if (meetings_to_come_.empty()) return;
+    const Meeting& next = meetings_to_come_.top();
+    neighbours_.fetch(next.a);
+    if (!next.with_plane()) neighbours_.fetch(next.b);
   }
 
   // --- what is to come
