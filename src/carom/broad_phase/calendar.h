@@ -8,8 +8,8 @@
 
 namespace carom {
 
-/// Pairs of balls by the time at which they are due: a calendar queue whose days are steps. Source: R. Brown,
-/// Commun. ACM 31, 1220 (1988).
+/// Pairs of balls by the time at which they are due: a calendar queue whose days are steps, or a few
+/// of them where there are very many. Source: R. Brown, Commun. ACM 31, 1220 (1988).
 ///
 /// A step ends where a day does, but for rounding; so days are put a little later, and end a thousandth of
 /// a day after the step.
@@ -27,7 +27,7 @@ class Calendar {
     today_ = 0;
   }
 
-  /// @param due_s  when the pair is due; at once where that is over
+  /// @param due_s  when the pair is due; at once where that is over. @pre begin() was called
   void put(const BallPair& pair, double due_s) { days_[std::max(today_, day_of(due_s))].push_back(pair); }
 
   /// Takes out all pairs that are due until then, and adds them to `due`; some that are a little later may be

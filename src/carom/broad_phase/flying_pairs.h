@@ -82,9 +82,14 @@ class FlyingPairs {
     coming_ = {};  // was many at once
   }
 
-  /// Those that are due until then; some stand here twice.
+  /// Those that are due until then; some stand here more than once, for a pair that is asked anew stays where
+  /// it was put before. @pre begin() was called
   std::span<const BallPair> take(double until_s) {
     calendar_.take(until_s, due_);
+    if (due_.size() > pairs_.size()) {  // of a ball that is hit again and again
+      std::sort(due_.begin(), due_.end());
+      due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
+    }
     return due_;
   }
 

@@ -29,12 +29,13 @@ enum class Listed { kNear, kAll };
 /// s. Until some ball has moved by s/2 no other pair can touch, for two balls come nearer to each other by at
 /// most s. So the list is made anew only when the longest way that a ball may have gone comes to s/2; and
 /// that way is known from a speed, without a look at any ball. Source: L. Verlet, Phys. Rev. 159, 98 (1967).
-/// Which of the listed pairs are due in a step is known as well. Where fields act a pair with a gap g between
-/// its balls is not due before balls may have gone g/2, for the same reason; where none do, not before it has
-/// come so far that they touch if neither is hit, and whom a ball is listed with that was hit is noted.
 ///
-/// Were it the speed of the fastest ball, lists would live the shorter the more balls there are, for the sake
-/// of a few. So ways are counted at a cruising speed that few balls exceed; and each of these adds to the
+/// Which of the listed pairs are due in a step is known as well. Where fields act a pair with a gap g between
+/// its balls is not due before balls may have gone g/2 (due_pairs.h). Where none do it is due when its balls
+/// touch if neither is hit; and whom a ball that was hit is listed with is noted (flying_pairs.h).
+///
+/// Were ways counted at the speed of the fastest ball, lists would live the shorter the more balls there are,
+/// for the sake of a few. So it is a cruising speed that few balls exceed; and each of these adds to the
 /// list, when it is made or when an impact has made the ball fast, the pairs that it may get to until the
 /// list ends.
 ///
@@ -137,7 +138,8 @@ class PairList {
   };
 
   /// The ball may be faster than the list allows for: adds what pairs it may get to until the list ends, or
-  /// ends the list after the step at hand. Pairs that the list has are added again: they may not be due.
+  /// ends the list after the step at hand. Where fields act pairs that the list has are added again: they may
+  /// not be due. Where none do its pairs are due once they are asked for, by expect_anew().
   /// @param place_of  where a ball is, or was since the list was made
   template <class PlaceOf>
   void hurry(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, std::size_t ball,

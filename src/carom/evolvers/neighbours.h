@@ -60,7 +60,7 @@ class Neighbours {
   /// @pre the flights of the step have ended, but for the balls' landing
   void end_step() { list_.travelled(longest_path(), flights_.step_s()); }
 
-  /// Between steps, when balls have landed or the list holds: asks anew when those meet that were touched.
+  /// Between steps: ends the list, or where it holds asks anew when those meet that were touched.
   void expect_anew(bool holds) requires(!Balls::kFieldsAct) {
     holds ? list_.expect_anew(world(), flights_.flown_s(), flights_.touched()) : list_.end();
   }
