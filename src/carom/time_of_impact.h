@@ -72,6 +72,43 @@ double time_to_touch(const Vec<Dim>& d, const Vec<Dim>& w, double sigma, double 
   return (distance - sigma) * (distance + sigma) / (-b + std::sqrt((reach - miss) * (reach + miss)));
 }
 
+/// Two balls that fly straight on, seen from one of them: how soon may they touch? No later than they do.
+///
+/// With d and w their relative place and velocity, m and m/s, and σ the sum of their radii, m, they touch
+/// where
+///   |d + w t|² = d² + 2 t d·w + t² w² = σ².
+/// What is off by rounding of d², of d·w and of the discriminant, is a few u = ε/2 of d², of σ² or of d² w²:
+/// d² is taken a little smaller and σ² a little larger by more than that.
+template <int Dim>
+class Approach {
+ public:
+  Approach(const Vec<Dim>& d, const Vec<Dim>& w, double sigma)
+      : beyond_((1.0 - kRounding) * d.squaredNorm() - (1.0 + kRounding) * (sigma * sigma)),
+        closing_(-d.dot(w)),
+        w_squared_(w.squaredNorm()) {}
+
+  /// A cheap question that few pairs pass: d² + 2 t d·w <= σ² for some t up to that.
+  bool may_touch_within(double time_s) const {
+    // closing + |closing| is 2 max(0, closing), without a branch that every other pair would take.
+    return !(beyond_ > time_s * (closing_ + std::abs(closing_)));
+  }
+
+  /// s from now; kNever where they do not.
+  double first_touch_s() const {
+    if (!(beyond_ > 0.0)) return 0.0;
+    const double discriminant = closing_ * closing_ - beyond_ * w_squared_;
+    if (closing_ <= 0.0 || discriminant < 0.0) return kNever;
+    return beyond_ / (closing_ + std::sqrt(discriminant));
+  }
+
+ private:
+  static constexpr double kRounding = 16.0 * kEpsilon;
+
+  double beyond_;     ///< d² - σ², m²
+  double closing_;    ///< -d·w, m²/s
+  double w_squared_;  ///< m²/s²
+};
+
 /// When two balls touch that are accelerated differently: the first time up to `horizon_s` at which
 /// f(t) = |d + w t + ½ a t²|² - σ², a polynomial of degree four, falls through zero. Balls that overlap and
 /// part are given until they fall back to where they are: then (f(t) - f(0))/t falls through zero.

@@ -34,21 +34,24 @@ class Calendar {
   /// among them.
   void take(double until_s, std::vector<BallPair>& due) {
     const std::size_t until = std::max(today_, day_of(until_s * kRoundUp));
-    for (; today_ <= until; ++today_) {
-      std::vector<BallPair>& day = days_[today_];
-      due.insert(due.end(), day.begin(), day.end());
-      day.clear();
-    }
-    today_ = until;
+    for (; today_ < until; ++today_) take_day(due);
+    take_day(due);  // it may go on in the next step
   }
 
  private:
   /// So that an empty calendar is begun in no time; with more steps than that before its end, some look at
   /// the same day.
   static constexpr double kMostDays = 1024.0;
+  /// Day k ends 1/1024 of a day after k days; what is rounded of a thousand days is far less.
   static constexpr double kLater = 1.0 - 1.0 / 1024.0;
-  /// For times added up step by step.
+  /// For times that are added up step by step: n steps are off by n u at most, and 2⁻²⁴ is 2²⁹ u.
   static constexpr double kRoundUp = 1.0 + 0x1p-24;
+
+  void take_day(std::vector<BallPair>& due) {
+    std::vector<BallPair>& day = days_[today_];
+    due.insert(due.end(), day.begin(), day.end());
+    day.clear();
+  }
 
   /// What is not a number is due on the last day, which is never over.
   std::size_t day_of(double time_s) const {

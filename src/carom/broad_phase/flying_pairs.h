@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -17,42 +16,6 @@
 #include "core/large_pages.h"
 
 namespace carom {
-
-/// Two balls that fly straight on, seen from one of them: when may they touch?
-///
-/// With d and w their relative place and velocity and σ the sum of their radii, |d + w t|² = d² + 2 t d·w +
-/// t² w²; they touch where that is σ². What may be rounded is taken off d² and added to σ, so that no time is
-/// later than the true one.
-template <int Dim>
-class Approach {
- public:
-  Approach(const Vec<Dim>& d, const Vec<Dim>& w, double sigma)
-      : beyond_((1.0 - kRounding) * d.squaredNorm() - sigma * sigma),
-        closing_(-d.dot(w)),
-        w_squared_(w.squaredNorm()) {}
-
-  /// A cheap question that few pairs pass: d² + 2 t d·w <= σ² for some t up to that.
-  bool may_touch_within(double time_s) const {
-    // closing + |closing| is 2 max(0, closing), without a branch that every other pair would take.
-    return !(beyond_ > time_s * (closing_ + std::abs(closing_)));
-  }
-
-  /// s from now; kNever where they do not.
-  double first_touch_s() const {
-    if (!(beyond_ > 0.0)) return 0.0;
-    const double discriminant = closing_ * closing_ - beyond_ * w_squared_;
-    if (closing_ <= 0.0 || discriminant < 0.0) return kNever;
-    return beyond_ / (closing_ + std::sqrt(discriminant));
-  }
-
- private:
-  /// What is off by rounding of d², of d·w and of the discriminant is a few u of d², or of d² w².
-  static constexpr double kRounding = 16.0 * kEpsilon;
-
-  double beyond_;   ///< d² - σ², m²
-  double closing_;  ///< -d·w, m²/s
-  double w_squared_;
-};
 
 /// Pairs of balls that fly straight on between their impacts.
 ///

@@ -165,19 +165,12 @@ class ToiEvolver final : public Simulation {
   }
 
   /// A cheap question that leaves few pairs to the exact one: may these touch in the step, both flying as
-  /// they do? With d and w their relative place and velocity, and a part of at most f = h² max|a| that fields
-  /// have in their approach, |d + w t| <= σ + f for some t in [0, h]; and
-  ///   |d + w t|² = d² + 2 t d·w + t² w² >= d² + 2 h min(0, d·w).
-  /// What is rounded is a few u of d² and of σ², for where 2 h |d·w| exceeds d² the answer is clear.
+  /// they do? Fields have a part of at most f = h² max|a| in their approach.
   bool come_near(std::size_t a, std::size_t b, double fall_m) const {
-    const Place d = flights_.place_at_start(b) - flights_.place_at_start(a);
-    const Place w = world().velocity[b] - world().velocity[a];
-    const double sum = world().radius[a] + world().radius[b] + fall_m;
-    const double closing = d.dot(w);
-    // closing - |closing| is 2 min(0, closing), without a branch that every other pair would take.
-    const double nearest =
-        (1.0 - kNearRounding) * d.squaredNorm() + flights_.step_s() * (closing - std::abs(closing));
-    return !(nearest > (1.0 + kNearRounding) * (sum * sum));
+    const Approach<kDim> approach(flights_.place_at_start(b) - flights_.place_at_start(a),
+                                  world().velocity[b] - world().velocity[a],
+                                  world().radius[a] + world().radius[b] + fall_m);
+    return approach.may_touch_within(flights_.step_s());
   }
 
   void resolve_meetings() {
@@ -394,9 +387,6 @@ class ToiEvolver final : public Simulation {
     resting_.begin_flights_around(hit);
     expect_all_of(resting_.members());
   }
-
-  /// Of squares of distances, see come_near().
-  static constexpr double kNearRounding = 16.0 * kEpsilon;
 
   static constexpr std::uint32_t kEndless = std::numeric_limits<std::uint32_t>::max();
 
