@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,16 +13,19 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <new>
 #include <utility>
 
 #include "core/error.h"
+#include "trajectory/descriptor.h"
 
 namespace carom {
 
@@ -34,28 +38,17 @@ constexpr int kExitFinished = 0;
 constexpr int kExitThrew = 70;
 constexpr char kWhole = '\x06';  // last byte of a whole payload
 
-/// Both ends of a pipe; closes what is still open.
 struct Pipe {
-  int read = -1;
-  int write = -1;
+  Descriptor read;
+  Descriptor write;
 
   Pipe() {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) {
       throw MachineError(fmt::format("no pipe: {}", std::strerror(errno)));
     }
-    read = ends[0];
-    write = ends[1];
-  }
-  Pipe(Pipe&& other) noexcept : read(std::exchange(other.read, -1)), write(std::exchange(other.write, -1)) {}
-  Pipe& operator=(Pipe&&) = delete;
-  ~Pipe() {
-    close_end(read);
-    close_end(write);
-  }
-  static void close_end(int& end) {
-    if (end >= 0) close(end);
-    end = -1;
+    read = Descriptor(ends[0]);
+    write = Descriptor(ends[1]);
   }
 };
 
@@ -87,14 +80,14 @@ void limit_memory(double memory_mib) {
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
-  dup2(errors.write, STDERR_FILENO);
+  dup2(errors.write.number(), STDERR_FILENO);
   // A signal shall end this process as itself, whatever handlers the parent has.
   for (const int fatal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(fatal, SIG_DFL);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   limit_memory(limits.memory_mib);
   try {
-    write_all(payload.write, job() + kWhole);
+    write_all(payload.write.number(), job() + kWhole);
     _exit(kExitFinished);
   } catch (const std::bad_alloc&) {
     write_all(STDERR_FILENO, fmt::format("out of memory (--memory {:g} MiB)", limits.memory_mib));
@@ -118,22 +111,30 @@ class Child {
     if (pid_ < 0) throw MachineError(fmt::format("no process can be started: {}", std::strerror(errno)));
     if (pid_ == 0) be_the_child(body, limits, payload_, errors_);
     setpgid(pid_, pid_);
-    Pipe::close_end(payload_.write);
-    Pipe::close_end(errors_.write);
+    payload_.write.close();
+    errors_.write.close();
+    // Not pidfd_open(): glibc 2.36 declares it as a function of C++, which no library has.
+    ended_ = Descriptor(static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)));
+    if (ended_.is_open()) return;
+    const std::string reason = std::strerror(errno);
+    stop();
+    throw MachineError("no process can be watched: " + reason);
   }
 
   std::size_t job() const { return job_; }
   Clock::time_point deadline() const { return deadline_; }
-  std::array<pollfd, 2> polls() const { return {{{payload_.read, POLLIN, 0}, {errors_.read, POLLIN, 0}}}; }
+  std::array<pollfd, 3> polls() const {
+    return {{{payload_.read.number(), POLLIN, 0},
+             {errors_.read.number(), POLLIN, 0},
+             {ended_.number(), POLLIN, 0}}};
+  }
 
   /// Takes in what there is to read. True once the process is done or out of time, and outcome() is set.
   bool progressed() {
     drain(payload_.read, payload_bytes_, kAll);
     drain(errors_.read, error_bytes_, kTail);
     if (Clock::now() >= deadline_) {
-      kill(-pid_, SIGKILL);
-      int ignored = 0;
-      waitpid(pid_, &ignored, 0);
+      stop();
       outcome_ = {ProcessEnd::timed_out, fmt::format("stopped after {:g} s", wall_seconds_), {}};
       return true;
     }
@@ -152,14 +153,20 @@ class Child {
   static constexpr std::size_t kAll = static_cast<std::size_t>(-1);
   static constexpr std::size_t kTail = 4096;
 
-  static void drain(int& file, std::string& into, std::size_t keep) {
+  void stop() const {
+    kill(-pid_, SIGKILL);
+    int ignored = 0;
+    waitpid(pid_, &ignored, 0);
+  }
+
+  static void drain(Descriptor& file, std::string& into, std::size_t keep) {
     static std::array<char, 65536> buffer;  // what is in it is overwritten: not cleared again and again
-    pollfd ready{file, POLLIN, 0};
-    while (file >= 0 && poll(&ready, 1, 0) > 0) {
-      const ssize_t count = read(file, buffer.data(), buffer.size());
+    pollfd ready{file.number(), POLLIN, 0};
+    while (file.is_open() && poll(&ready, 1, 0) > 0) {
+      const ssize_t count = read(file.number(), buffer.data(), buffer.size());
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) {
-        Pipe::close_end(file);
+        file.close();
         return;
       }
       into.append(buffer.data(), static_cast<std::size_t>(count));
@@ -195,6 +202,7 @@ class Child {
   Pipe payload_;
   Pipe errors_;
   pid_t pid_ = -1;
+  Descriptor ended_;  ///< readable once the process has ended
   std::string payload_bytes_;
   std::string error_bytes_;
   ProcessOutcome outcome_;
@@ -202,16 +210,14 @@ class Child {
 
 /// Sleeps until a child has something to say or a deadline is reached.
 void wait_for_any(const std::vector<std::unique_ptr<Child>>& children) {
-  // A child that closed its pipes but has not ended is looked at again after this time.
-  constexpr double kLongestSleepMs = 20.0;
   std::vector<pollfd> polls;
-  double wait_ms = kLongestSleepMs;
+  double wait_ms = std::numeric_limits<int>::max();
   for (const auto& child : children) {
     for (const pollfd& each : child->polls()) polls.push_back(each);
     const std::chrono::duration<double, std::milli> left = child->deadline() - Clock::now();
     wait_ms = std::clamp(left.count(), 0.0, wait_ms);
   }
-  poll(polls.data(), polls.size(), static_cast<int>(wait_ms));
+  poll(polls.data(), polls.size(), static_cast<int>(std::ceil(wait_ms)));
 }
 
 }  // namespace

@@ -1,11 +1,8 @@
 #include "trajectory/record.h"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
-#include <cerrno>
-#include <cstring>
-#include <limits>
+#include <deque>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -19,23 +16,30 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// An array in memory that stays shared across fork(). Pages are taken when they are first written.
-template <class T>
-std::shared_ptr<T[]> shared_array(std::size_t count) {
-  const std::size_t bytes = count * sizeof(T);
-  void* memory =
-      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (memory == MAP_FAILED) {
-    throw MachineError(
-        fmt::format("no memory for {} MiB of trajectory: {}", bytes >> 20U, std::strerror(errno)));
-  }
-  return {static_cast<T*>(memory), [bytes](T* start) { munmap(start, bytes); }};
-}
+/// What an engine's process records into.
+struct Recording {
+  explicit Recording(const Scenario& scenario)
+      : states(Trajectory::memory_for_states(scenario)), trajectory(scenario, states) {}
 
-void record_frame(const StagedRun& run, Trajectory& trajectory, std::size_t frame) {
-  run.snapshot(trajectory.frame(frame));
-  trajectory.tally(frame) = run.tally();
-}
+  SharedMemory states;  ///< what the trajectory's states lie in
+  Trajectory trajectory;
+};
+
+/// Writes frames as they come, each from the same room.
+class FrameWriter {
+ public:
+  explicit FrameWriter(Recording& recording) : recording_(recording), balls_(recording.trajectory.balls()) {}
+
+  void write(const StagedRun& run, std::size_t frame) {
+    run.snapshot(balls_);
+    recording_.states.write(frame * balls_.size() * sizeof(BallState), std::as_bytes(std::span(balls_)));
+    recording_.trajectory.tally(frame) = run.tally();
+  }
+
+ private:
+  Recording& recording_;
+  std::vector<BallState> balls_;
+};
 
 /// A simulation of the scene, or of what an event has made of it. @throws NotTaken
 std::unique_ptr<Simulation> create(const Engine& engine, const EngineChoice& choice, const Scenario& scene) {
@@ -45,19 +49,19 @@ std::unique_ptr<Simulation> create(const Engine& engine, const EngineChoice& cho
 }
 
 /// Simulates, records into the shared trajectory, adds the rest to the result. @throws NotTaken
-void simulate(const Scenario& scenario, const StagedRun::Create& create, Trajectory& trajectory,
-              Json& result) {
+void simulate(const Scenario& scenario, const StagedRun::Create& create, Recording& recording, Json& result) {
   // Left standing: the process that records ends with it, and an engine of many balls is long in taking down.
   // What it recorded is there by then, whatever an engine would do in its destructor.
   StagedRun& run = *std::make_unique<StagedRun>(scenario, create).release();
   double cpu_seconds = 0.0;
   std::int64_t steps = 0;
-  record_frame(run, trajectory, 0);
-  for (std::size_t frame = 1; frame < trajectory.frames(); ++frame) {
+  FrameWriter frames(recording);
+  frames.write(run, 0);
+  for (std::size_t frame = 1; frame < recording.trajectory.frames(); ++frame) {
     const double before = cpu_now();
     steps += run.to_next_frame();
     cpu_seconds += cpu_now() - before;
-    record_frame(run, trajectory, frame);
+    frames.write(run, frame);
   }
   result["cpu_seconds"] = cpu_seconds;
   result["steps"] = steps;
@@ -69,7 +73,7 @@ void simulate(const Scenario& scenario, const StagedRun::Create& create, Traject
 }
 
 /// The body of a recording process: what it does not record it returns as JSON.
-std::string record(const Scenario& scenario, const EngineChoice& choice, Trajectory trajectory) {
+std::string record(const Scenario& scenario, const EngineChoice& choice, Recording& recording) {
   const Engine& engine = choice.source.open();
   const EngineInfo info = engine.info();
   Json result = {{"version", info.version}, {"precision", info.precision}};
@@ -80,7 +84,7 @@ std::string record(const Scenario& scenario, const EngineChoice& choice, Traject
   }
   try {
     simulate(
-        scenario, [&](const Scenario& stage) { return create(engine, choice, stage); }, trajectory, result);
+        scenario, [&](const Scenario& stage) { return create(engine, choice, stage); }, recording, result);
   } catch (const NotTaken& reason) {
     result["unsupported"] = reason.what();
   }
@@ -143,26 +147,6 @@ void take_result(const std::string& payload, Run& run) {
 
 }  // namespace
 
-Trajectory::Trajectory(const Scenario& scenario)
-    : frames_(static_cast<std::size_t>(scenario.frames) + 1),
-      balls_(numbered_balls(scenario)),
-      duration_s_(scenario.duration_s),
-      states_(shared_array<BallState>(frames_ * balls_)),
-      tallies_(shared_array<Tally>(frames_)) {
-  if (scenario.events.empty()) return;
-  absent_ = std::make_shared<std::vector<bool>>(frames_ * balls_);
-  const Vec3 nowhere = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  Cast cast(scenario);
-  for (std::size_t k = 0; k < frames_; ++k) {
-    cast.to_frame(static_cast<std::int64_t>(k));
-    for (std::size_t i = 0; i < balls_; ++i) {
-      if (cast[i]) continue;
-      (*absent_)[k * balls_ + i] = true;
-      frame(k)[i] = {nowhere, nowhere, nowhere};
-    }
-  }
-}
-
 std::unique_ptr<Simulation> create_simulation(const Engine& engine, const Scenario& scenario,
                                               const EngineChoice& choice) {
   if (choice.tuned) {
@@ -177,6 +161,7 @@ std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineC
                              const std::function<void(std::size_t)>& done) {
   std::vector<Run> runs;
   std::vector<Job> jobs;
+  std::deque<Recording> recordings;
   const double trajectory_mib = static_cast<double>(sizeof(BallState)) *
                                 static_cast<double>(numbered_balls(scenario)) *
                                 static_cast<double>(scenario.frames + 1) / (1024.0 * 1024.0);
@@ -189,9 +174,9 @@ std::vector<Run> run_engines(const Scenario& scenario, const std::vector<EngineC
     Run& run = runs.emplace_back();
     run.engine = choice.source.name;
     run.profile = choice.profile;
-    run.trajectory = Trajectory(scenario);
-    jobs.emplace_back(
-        [&scenario, &choice, trajectory = run.trajectory] { return record(scenario, choice, trajectory); });
+    Recording& recording = recordings.emplace_back(scenario);
+    run.trajectory = recording.trajectory;
+    jobs.emplace_back([&scenario, &choice, &recording] { return record(scenario, choice, recording); });
   }
   const std::vector<ProcessOutcome> outcomes = run_isolated(jobs, limits, parallel, done);
   for (std::size_t i = 0; i < runs.size(); ++i) {

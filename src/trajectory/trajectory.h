@@ -10,6 +10,7 @@
 #include "engine/engine.h"
 #include "scenario/scenario.h"
 #include "trajectory/interference.h"
+#include "trajectory/shared_memory.h"
 
 namespace carom {
 
@@ -20,6 +21,9 @@ class Trajectory {
   Trajectory() = default;
   /// Room for a scene's frames. @throws MachineError where there is no memory.
   explicit Trajectory(const Scenario& scenario);
+  /// The same, with its states in this memory, through which they can be written, too.
+  Trajectory(const Scenario& scenario, const SharedMemory& states);
+  static SharedMemory memory_for_states(const Scenario& scenario);
 
   std::size_t frames() const { return frames_; }  ///< the initial one included
   std::size_t balls() const { return balls_; }    ///< by number (scenario/cast.h)

@@ -79,6 +79,20 @@ TEST(Isolation, AGrandchildThatHoldsThePipe_DoesNotHoldUpTheResult) {
   EXPECT_EQ(outcome.payload, "done");
 }
 
+TEST(Isolation, WhoClosesAllFiles_IsWaitedFor_AndItsEndIsSeenAtOnce) {
+  // Else it would be found at the deadline, and taken for a hang.
+  const ProcessOutcome outcome = run_one(
+      []() -> std::string {
+        for (int file = 0; file < 64; ++file) close(file);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        std::raise(SIGKILL);
+        return "";
+      },
+      {.wall_seconds = 20.0});
+  EXPECT_EQ(outcome.end, ProcessEnd::crashed);
+  EXPECT_NE(outcome.reason.find("signal 9"), std::string::npos) << outcome.reason;
+}
+
 TEST(Isolation, OutputOnStdout_GoesNowhere) {
   testing::internal::CaptureStdout();
   run_one([]() -> std::string {
