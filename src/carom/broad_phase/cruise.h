@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -26,8 +27,8 @@ class Cruise {
 
   void measure(const World<Dim>& world, const Threads& threads) {
     const double largest = largest_norm(world.velocity, threads);
-    mps_ = std::min(largest,
-                    std::max(largest / kMostTimes, kRootMeanSquares * root_mean_square(world, largest)));
+    mps_ = std::min(largest, std::max(largest / kMostTimes,
+                                      kRootMeanSquares * root_mean_square(world, largest, threads)));
     faster_.clear();
     threads.collect(world.size(), faster_,
                     [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
@@ -57,15 +58,21 @@ class Cruise {
 
   /// The root of the speeds' mean square, m/s. The squares are added up as whole numbers, whose sum does not
   /// depend on their order: each of them, by the largest, takes 32 bits, and the numbers of balls as many.
-  static double root_mean_square(const World<Dim>& world, double largest) {
+  static double root_mean_square(const World<Dim>& world, double largest, const Threads& threads) {
     if (!(largest > 0.0) || !std::isfinite(largest)) return largest;
     constexpr double kOne = 0x1p31;
     const double scale = kOne / (largest * largest);
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < world.size(); ++i) {
-      const double share = world.velocity[i].squaredNorm() * scale;
-      if (share <= 2.0 * kOne) sum += static_cast<std::uint64_t>(share);  // what is not a number is not
-    }
+    std::vector<std::uint64_t> sums;
+    threads.collect(world.size(), sums,
+                    [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& found) {
+                      std::uint64_t sum = 0;
+                      for (std::size_t i = begin; i < end; ++i) {
+                        const double share = world.velocity[i].squaredNorm() * scale;
+                        if (share <= 2.0 * kOne) sum += static_cast<std::uint64_t>(share);  // a number
+                      }
+                      found.push_back(sum);
+                    });
+    const std::uint64_t sum = std::accumulate(sums.begin(), sums.end(), std::uint64_t{0});
     return largest * std::sqrt(static_cast<double>(sum) / kOne / static_cast<double>(world.size()));
   }
 

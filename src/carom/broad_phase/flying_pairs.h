@@ -41,7 +41,11 @@ class FlyingPairs {
     due_.clear();
     is_hit_.assign(world.size(), false);
     calendar_.begin(step_s, end_s);
-    expect(world, 0.0, 0.0, pairs_, threads);
+    const std::span<const BallPair> all = pairs_;
+    threads.collect(all.size(), coming_, [&](std::size_t begin, std::size_t end, std::vector<Coming>& found) {
+      find_coming(world, 0.0, 0.0, all.subspan(begin, end - begin), found);
+    });
+    put_coming();
     coming_ = {};  // was many at once
   }
 
@@ -61,21 +65,20 @@ class FlyingPairs {
   void expect_anew(const World<Dim>& world, double now_s, double flown_s, std::span<const std::uint32_t> hit,
                    const ListedNeighbours& neighbours, const Threads& threads) {
     for (const std::uint32_t ball : hit) is_hit_[ball] = true;
-    asked_.clear();
-    for (const auto& [a, b] : due_) {
-      if (!is_hit_[a] && !is_hit_[b]) asked_.emplace_back(a, b);
-    }
-    threads.collect(hit.size(), asked_,
-                    [&](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
-                      for (std::size_t k = begin; k < end; ++k) {
-                        neighbours.fetch(hit[std::min(k + 2 * kAhead, end - 1)]);
-                        neighbours.fetch_all_of(hit[std::min(k + kAhead, end - 1)]);
-                        add_pairs_of(hit[k], neighbours, found);
-                      }
-                    });
-    for (const std::uint32_t ball : hit) is_hit_[ball] = false;
+    std::erase_if(due_, [&](const BallPair& pair) { return is_hit_[pair.first] || is_hit_[pair.second]; });
+    find_coming(world, now_s, flown_s, due_, coming_);
     due_.clear();
-    expect(world, now_s, flown_s, asked_, threads);
+    threads.collect(hit.size(), coming_, [&](std::size_t begin, std::size_t end, std::vector<Coming>& found) {
+      std::vector<BallPair> asked;
+      for (std::size_t k = begin; k < end; ++k) {
+        neighbours.fetch(hit[std::min(k + 2 * kAhead, end - 1)]);
+        neighbours.fetch_all_of(hit[std::min(k + kAhead, end - 1)]);
+        add_pairs_of(hit[k], neighbours, asked);
+      }
+      find_coming(world, now_s, flown_s, asked, found);
+    });
+    for (const std::uint32_t ball : hit) is_hit_[ball] = false;
+    put_coming();
   }
 
  private:
@@ -93,8 +96,9 @@ class FlyingPairs {
     });
   }
 
-  void expect(const World<Dim>& world, double now_s, double flown_s, std::span<const BallPair> pairs,
-              const Threads& threads) {
+  /// Of these pairs, those that may touch before the end, each with when it is due.
+  void find_coming(const World<Dim>& world, double now_s, double flown_s, std::span<const BallPair> pairs,
+                   std::vector<Coming>& coming) const {
     const auto approach = [&](std::size_t k) {
       const auto [a, b] = pairs[k];
       return Approach<Dim>(world.place_after(flown_s, b) - world.place_after(flown_s, a),
@@ -103,23 +107,23 @@ class FlyingPairs {
     };
     const auto is_fixed = [&](std::uint32_t ball) { return world.inverse_mass[ball] == 0.0; };
     const double left_s = std::max(0.0, end_s_ - now_s);
-    coming_.clear();
-    threads.collect(pairs.size(), coming_,
-                    [&](std::size_t begin, std::size_t end, std::vector<Coming>& found) {
-                      for_each_passing(
-                          begin, end,
-                          [&](std::size_t k) {
-                            world.fetch_pair(pairs[std::min(k + kAhead, pairs.size() - 1)]);
-                            return approach(k).may_touch_within(left_s);
-                          },
-                          [&](std::size_t k) {
-                            const double wait_s = approach(k).first_touch_s();
-                            if (wait_s == kNever || wait_s > left_s) return;
-                            if (is_fixed(pairs[k].first) && is_fixed(pairs[k].second)) return;
-                            found.push_back({pairs[k], now_s + wait_s});
-                          });
-                    });
+    for_each_passing(
+        0, pairs.size(),
+        [&](std::size_t k) {
+          world.fetch_pair(pairs[std::min(k + kAhead, pairs.size() - 1)]);
+          return approach(k).may_touch_within(left_s);
+        },
+        [&](std::size_t k) {
+          const double wait_s = approach(k).first_touch_s();
+          if (wait_s == kNever || wait_s > left_s) return;
+          if (is_fixed(pairs[k].first) && is_fixed(pairs[k].second)) return;
+          coming.push_back({pairs[k], now_s + wait_s});
+        });
+  }
+
+  void put_coming() {
     for (const auto& [pair, due_s] : coming_) calendar_.put(pair, due_s);
+    coming_.clear();
   }
 
   /// So many before a pair, or a ball, is looked at it is fetched from memory.
@@ -129,10 +133,9 @@ class FlyingPairs {
   double rounding_m_ = 0.0;
   Column<BallPair> pairs_;
   Calendar calendar_;
-  std::vector<BallPair> due_;  ///< taken from the calendar
-  std::vector<BallPair> asked_;
-  std::vector<bool> is_hit_;  ///< of each ball, while pairs are asked anew
-  std::vector<Coming> coming_;
+  std::vector<BallPair> due_;   ///< taken from the calendar
+  std::vector<bool> is_hit_;    ///< of each ball, while pairs are asked anew
+  std::vector<Coming> coming_;  ///< to be put
 };
 
 }  // namespace carom

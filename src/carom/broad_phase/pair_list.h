@@ -35,9 +35,8 @@ enum class Listed { kNear, kAll };
 /// touch if neither is hit; and whom a ball that was hit is listed with is noted (flying_pairs.h).
 ///
 /// Were ways counted at the speed of the fastest ball, lists would live the shorter the more balls there are,
-/// for the sake of a few. So it is a cruising speed that few balls exceed; and each of these adds to the
-/// list, when it is made or when an impact has made the ball fast, the pairs that it may get to until the
-/// list ends.
+/// for the sake of a few. So it is a cruising speed that few balls exceed. The list has, of each of these,
+/// all the pairs that it may get to until the list ends; and one that an impact made fast adds its own.
 ///
 /// What is listed decides what is looked at, never what happens: with kAll all pairs are, in every step. That
 /// is the slow twin, and tests hold both to the same bits. How long a list lives does not depend on it, nor
@@ -65,6 +64,11 @@ class PairList {
     farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
   }
 
+  /// Has the processor load what is asked when the ball has jumped.
+  void fetch_jump(std::size_t ball) const {
+    if (!jumps_m_.empty()) __builtin_prefetch(&jumps_m_[ball], 1);
+  }
+
   /// Nothing holds any more.
   void end() { enough_m_ = kNothingHolds; }
 
@@ -89,13 +93,13 @@ class PairList {
   /// Before build(), where balls keep their speeds between impacts: chooses the cruising speed.
   void measure_speeds(const World<Dim>& world) { cruise_.measure(world, threads_); }
 
-  /// Those that are faster have to hurry() when the list is made, and when an impact makes them so.
+  /// Those that an impact makes faster have to hurry().
   const Cruise<Dim>& cruise() const { return cruise_; }
 
   /// Whether the next list will serve more than a step or two in which balls go this far, m.
   bool may_last(double way_m) const { return 2.0 * way_m <= next_half_skin_m_; }
 
-  /// Makes the list. @pre balls stand in memory where they are
+  /// Makes the list. @pre balls stand in memory where they are, and the speeds are as they were measured
   /// @param step_s  how long steps will be
   void build(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, double step_s) {
     build_for_a_step(world, planes, step_s, [](std::size_t) { return 0.0; });
@@ -110,9 +114,10 @@ class PairList {
   void build_for_a_step(const World<Dim>& world, const std::vector<Plane<Dim>>& planes, double step_s,
                         const Way& way_m) {
     find_pairs(world, way_m);
-    find_planes(world, planes);
     forget_ways();
     choose_skin(world);
+    if constexpr (!kFieldsAct) add_pairs_of_faster(world, way_m);
+    find_planes(world, planes);
     if (listed_ == Listed::kAll) list_all(world.size());
     if constexpr (!kFieldsAct) {
       if (listed_ == Listed::kNear) {
@@ -181,8 +186,11 @@ class PairList {
     };
     if constexpr (kFieldsAct) {
       pairs_.test(stage_at(gone_m(way_m) + 2.0 * rounding_m_), threads_, found, test);
+    } else if (listed_ == Listed::kNear) {
+      // Few, most of which touch: what this thread loads here it needs next. Shared, that took longer.
+      pairs = pairs_.take(time_s_ + duration_s);
+      test(std::size_t{0}, pairs.size(), found);
     } else {
-      if (listed_ == Listed::kNear) pairs = pairs_.take(time_s_ + duration_s);
       threads_.collect(pairs.size(), found, test);
     }
   }
@@ -249,6 +257,10 @@ class PairList {
     }
   }
 
+  float bound_for(const World<Dim>& world, std::size_t ball, double way_m) const {
+    return rounded_up(world.radius[ball] + std::max(half_skin_m_, way_m));
+  }
+
   template <class Way>
   void find_pairs(const World<Dim>& world, const Way& way_m) {
     half_skin_m_ = next_half_skin_m_;
@@ -256,12 +268,44 @@ class PairList {
     farthest_m_ = threads_.largest(places.size(), [&](std::size_t k) { return std::abs(places[k]); });
     bound_.resize(world.size());
     threads_.in_parallel(world.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        bound_[i] = rounded_up(world.radius[i] + std::max(half_skin_m_, way_m(i)));
-      }
+      for (std::size_t i = begin; i < end; ++i) bound_[i] = bound_for(world, i, way_m(i));
     });
     broad_phase_->build(world.position, bound_, threads_);
     broad_phase_->find_pairs(pairs_.find(), threads_);
+  }
+
+  /// Gives balls that are faster than cruising the bounds that they need, and lists what comes of that. The
+  /// broad phase did not know of it: for the sake of a few its cells would be wider.
+  template <class Way>
+  void add_pairs_of_faster(const World<Dim>& world, const Way& way_m) {
+    const std::span<const std::uint32_t> faster = cruise_.faster();
+    for (const std::uint32_t ball : faster) {
+      const double all_the_way_m = cruise_.times(world, ball) * half_skin_m_;
+      const float bound = rounded_up(world.radius[ball] + all_the_way_m * kRoundUp + 2.0 * rounding_m_);
+      if (!(bound > bound_[ball])) continue;
+      bound_[ball] = bound;
+      ++hurried_;
+      broad_phase_->bound_grew(ball);
+    }
+    if (listed_ == Listed::kAll) return;
+    const auto before = [&](std::uint32_t ball) {
+      return Reach<Dim>{world.position[ball], bound_for(world, ball, way_m(ball))};
+    };
+    const auto now = [&](std::uint32_t ball) { return Reach<Dim>{world.position[ball], bound_[ball]}; };
+    threads_.collect(faster.size(), pairs_.find(),
+                     [&](std::size_t begin, std::size_t end, Column<BallPair>& found) {
+                       std::vector<std::uint32_t> near;
+                       for (const std::uint32_t ball : faster.subspan(begin, end - begin)) {
+                         broad_phase_->find_near(now(ball), near);
+                         for (const std::uint32_t other : near) {
+                           if (other == ball || !may_meet(now(ball), now(other))) continue;
+                           if (may_meet(before(ball), before(other))) continue;  // it is listed
+                           if (other < ball && bound_[other] > before(other).bound)
+                             continue;  // the other lists it
+                           found.emplace_back(std::min(ball, other), std::max(ball, other));
+                         }
+                       }
+                     });
   }
 
   void sort_by_stages(const World<Dim>& world) {
@@ -320,18 +364,22 @@ class PairList {
   }
 
   void find_planes(const World<Dim>& world, const std::vector<Plane<Dim>>& planes) {
+    constexpr std::size_t kAtOnce = 256;  // balls that stay in the nearest cache from plane to plane
     besides_.clear();
-    for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
-      const auto is_beside = [&](std::size_t ball) {
-        return listed_ == Listed::kAll || planes[plane].gap(world.position[ball], bound_[ball]) <= 0.0;
-      };
-      threads_.collect(world.size(), besides_,
-                       [&](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
-                         for_each_passing(begin, end, is_beside, [&](std::size_t ball) {
-                           found.emplace_back(static_cast<std::uint32_t>(ball), plane);
-                         });
-                       });
-    }
+    threads_.collect(
+        world.size(), besides_, [&](std::size_t begin, std::size_t end, std::vector<BallPair>& found) {
+          for (std::size_t first = begin; first < end; first += kAtOnce) {
+            for (std::uint32_t plane = 0; plane < planes.size(); ++plane) {
+              for_each_passing(
+                  first, std::min(first + kAtOnce, end),
+                  [&](std::size_t ball) {
+                    return listed_ == Listed::kAll ||
+                           planes[plane].gap(world.position[ball], bound_[ball]) <= 0.0;
+                  },
+                  [&](std::size_t ball) { found.emplace_back(static_cast<std::uint32_t>(ball), plane); });
+            }
+          }
+        });
   }
 
   /// Ways are counted from here. What is rounded, a few u = ε/2 each: the coordinates in every step; and the

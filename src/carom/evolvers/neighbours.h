@@ -47,14 +47,7 @@ class Neighbours {
         return flights_.path_bound(ball, flights_.step_s());
       });
     }
-    if constexpr (Balls::kFieldsAct) {
-      list_.note_neighbours(world());
-    } else {
-      for (const std::uint32_t ball : list_.cruise().faster()) {
-        hurry(ball, flights_.path_bound(ball, flights_.step_s()));
-      }
-      list_.expect_anew(world(), 0.0, list_.cruise().faster());
-    }
+    if constexpr (Balls::kFieldsAct) list_.note_neighbours(world());
   }
 
   /// @pre the flights of the step have ended, but for the balls' landing

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <numeric>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -52,7 +51,8 @@ class StepEvolver final : public Simulation {
         surface_(scene.ball_contact),
         wall_surface_(scene.wall_contact),
         gravity_(flattened<kDim>(scene.effects.gravity.value_or(Vec3::Zero()))),
-        acceleration_(Traits::kAccelerates ? world_.size() : 0) {
+        acceleration_(Traits::kAccelerates ? world_.size() : 0),
+        is_landed_(Traits::kAccelerates ? 0 : world_.size()) {
     if constexpr (Traits::kSheets) {
       add_slabs<kDim>(scene, planes_);
       add_barriers<kDim>(scene, planes_);
@@ -93,6 +93,13 @@ class StepEvolver final : public Simulation {
     std::uint32_t a;
     std::uint32_t b;
     bool plane;
+    std::uint64_t rank;  ///< among those of pairs, or of planes
+
+    /// Pairs by their balls' numbers, then planes, each with its balls.
+    bool operator<(const Touch& other) const {
+      return plane != other.plane ? other.plane : rank < other.rank;
+    }
+    bool operator==(const Touch& other) const { return plane == other.plane && rank == other.rank; }
   };
 
   void begin_step(double step_s) {
@@ -124,21 +131,14 @@ class StepEvolver final : public Simulation {
         [this](std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) { touch(a, b, found); });
     for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
     // The list is in an order of its own; the order of the contacts decides what happens.
-    std::sort(touches_.begin(), touches_.end(),
-              [this](const Touch& x, const Touch& y) { return rank(x) < rank(y); });
-    const auto twice = std::unique(touches_.begin(), touches_.end(),
-                                   [this](const Touch& x, const Touch& y) { return rank(x) == rank(y); });
-    touches_.erase(twice, touches_.end());
+    std::sort(touches_.begin(), touches_.end());
+    touches_.erase(std::unique(touches_.begin(), touches_.end()), touches_.end());
   }
 
   void look_around(double step_s) {
     near_.sort(world_);
     if constexpr (!Traits::kAccelerates) near_.measure_speeds(world_);
     near_.build(world_, planes_, step_s);
-    if constexpr (!Traits::kAccelerates) {
-      for (const std::uint32_t ball : near_.cruise().faster()) hurry(ball);
-      near_.expect_anew(world_, 0.0, near_.cruise().faster());
-    }
   }
 
   /// Where a ball in flight is.
@@ -153,7 +153,8 @@ class StepEvolver final : public Simulation {
 
   void touch(std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) const {
     if (!world_.before(a, b)) std::swap(a, b);
-    if (world_.inverse_mass[a] + world_.inverse_mass[b] > 0.0) found.push_back({a, b, false});
+    if (world_.inverse_mass[a] + world_.inverse_mass[b] == 0.0) return;
+    found.push_back({a, b, false, rank(world_.number_of(a), world_.number_of(b))});
   }
 
   void touch_plane(std::uint32_t ball, std::uint32_t plane) {
@@ -161,13 +162,12 @@ class StepEvolver final : public Simulation {
     if constexpr (Traits::kSheets) {
       if (!planes_[plane].faces(place(ball))) return;
     }
-    if (world_.inverse_mass[ball] > 0.0) touches_.push_back({ball, plane, true});
+    if (world_.inverse_mass[ball] == 0.0) return;
+    touches_.push_back({ball, plane, true, rank(plane, world_.number_of(ball))});
   }
 
-  /// Pairs by their balls' numbers, then planes, each with its balls.
-  std::tuple<bool, std::uint32_t, std::uint32_t> rank(const Touch& touch) const {
-    const std::uint32_t a = world_.number_of(touch.a);
-    return touch.plane ? std::tuple(true, touch.b, a) : std::tuple(false, a, world_.number_of(touch.b));
+  static std::uint64_t rank(std::uint32_t first, std::uint32_t second) {
+    return std::uint64_t{first} << 32U | second;
   }
 
   // --- impacts
@@ -178,12 +178,17 @@ class StepEvolver final : public Simulation {
     if constexpr (Traits::kAccelerates) return;
     landed_.clear();
     for (const Touch& touch : touches_) {
-      landed_.push_back(touch.a);
-      if (!touch.plane) landed_.push_back(touch.b);
+      land(touch.a);
+      if (!touch.plane) land(touch.b);
     }
-    std::sort(landed_.begin(), landed_.end());
-    landed_.erase(std::unique(landed_.begin(), landed_.end()), landed_.end());
-    for (const std::uint32_t ball : landed_) world_.position.set(ball, place(ball));
+    for (const std::uint32_t ball : landed_) is_landed_[ball] = false;
+  }
+
+  void land(std::uint32_t ball) {
+    if (is_landed_[ball]) return;
+    is_landed_[ball] = true;
+    landed_.push_back(ball);
+    world_.position.set(ball, place(ball));
   }
 
   void take_off() {
@@ -341,7 +346,12 @@ class StepEvolver final : public Simulation {
 
   /// Moves apart what overlaps, contact by contact.
   void separate() {
-    for (const Touch& touch : touches_) {
+    constexpr std::size_t kAhead = 8;
+    for (std::size_t k = 0; k < touches_.size(); ++k) {
+      const Touch& touch = touches_[k];
+      const Touch& soon = touches_[std::min(k + kAhead, touches_.size() - 1)];
+      near_.fetch_jump(soon.a);
+      if (!soon.plane) near_.fetch_jump(soon.b);
       if (touch.plane) {
         const Plane<kDim>& plane = planes_[touch.b];
         const double gap = plane.gap(world_.position[touch.a], world_.radius[touch.a]);
@@ -397,6 +407,7 @@ class StepEvolver final : public Simulation {
 
   std::vector<Touch> touches_;
   std::vector<std::uint32_t> landed_;
+  std::vector<bool> is_landed_;  ///< of each ball, while balls land
   std::vector<Place> landed_at_;
   std::vector<std::uint32_t> root_;
   std::vector<ClosedContact<kDim>> contacts_;
