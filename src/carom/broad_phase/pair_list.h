@@ -298,10 +298,9 @@ class PairList {
                        for (const std::uint32_t ball : faster.subspan(begin, end - begin)) {
                          broad_phase_->find_near(now(ball), near);
                          for (const std::uint32_t other : near) {
-                           if (other == ball || !may_meet(now(ball), now(other))) continue;
-                           if (may_meet(before(ball), before(other))) continue;  // it is listed
-                           if (other < ball && bound_[other] > before(other).bound)
-                             continue;  // the other lists it
+                           const bool listed = may_meet(before(ball), before(other));
+                           const bool lists_it = other < ball && bound_[other] > before(other).bound;
+                           if (listed || lists_it || !may_meet(now(ball), now(other))) continue;
                            found.emplace_back(std::min(ball, other), std::max(ball, other));
                          }
                        }
