@@ -19,6 +19,10 @@ namespace {
 
 constexpr std::size_t kCount = 100'000;  // of many pages, and not of whole ones
 
+std::span<std::uint64_t> numbers(const std::shared_ptr<std::uint64_t[]>& memory) {
+  return {memory.get(), kCount};
+}
+
 /// What a job in a process of its own leaves behind is seen after it has ended.
 template <class Work>
 void in_another_process(const Work& work) {
@@ -34,13 +38,14 @@ void in_another_process(const Work& work) {
 }
 
 TEST(SharedMemory, BeginsAsZeros) {
-  const std::shared_ptr<std::uint64_t[]> values = SharedMemory(kCount * 8).mapped<std::uint64_t>();
-  for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(values[i], 0U);
+  const std::shared_ptr<std::uint64_t[]> memory = SharedMemory(kCount * 8).mapped<std::uint64_t>();
+  for (const std::uint64_t value : numbers(memory)) ASSERT_EQ(value, 0U);
 }
 
 TEST(SharedMemory, WhatAnotherProcessWrites_AndStores_IsSeen_InItsPlace_AndNothingElseChanges) {
   const SharedMemory memory(kCount * 8);
-  const std::shared_ptr<std::uint64_t[]> values = memory.mapped<std::uint64_t>();
+  const std::shared_ptr<std::uint64_t[]> mapped = memory.mapped<std::uint64_t>();
+  const std::span<std::uint64_t> values = numbers(mapped);
   constexpr std::size_t kFirst = 777;  // not at the start of a page
   const std::vector<std::uint64_t> written(50'000, 42);
   in_another_process([&] {
@@ -57,7 +62,8 @@ TEST(SharedMemory, WhatAnotherProcessWrites_AndStores_IsSeen_InItsPlace_AndNothi
 
 TEST(SharedMemory, WhatIsMapped_StaysAfterTheMemoryIsClosed) {
   std::optional<SharedMemory> memory(kCount * 8);
-  const std::shared_ptr<std::uint64_t[]> values = memory->mapped<std::uint64_t>();
+  const std::shared_ptr<std::uint64_t[]> mapped = memory->mapped<std::uint64_t>();
+  const std::span<std::uint64_t> values = numbers(mapped);
   const std::vector<std::uint64_t> fives(kCount, 5);
   memory->write(0, std::as_bytes(std::span(fives)));
   memory.reset();
