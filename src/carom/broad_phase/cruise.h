@@ -58,6 +58,7 @@ class Cruise {
 
   /// The root of the speeds' mean square, m/s. The squares are added up as whole numbers, whose sum does not
   /// depend on their order: each of them, by the largest, takes 32 bits, and the numbers of balls as many.
+  /// What is not a number counts for nothing.
   static double root_mean_square(const World<Dim>& world, double largest, const Threads& threads) {
     if (!(largest > 0.0) || !std::isfinite(largest)) return largest;
     constexpr double kOne = 0x1p31;
@@ -68,7 +69,7 @@ class Cruise {
                       std::uint64_t sum = 0;
                       for (std::size_t i = begin; i < end; ++i) {
                         const double share = world.velocity[i].squaredNorm() * scale;
-                        if (share <= 2.0 * kOne) sum += static_cast<std::uint64_t>(share);  // a number
+                        if (share <= 2.0 * kOne) sum += static_cast<std::uint64_t>(share);
                       }
                       found.push_back(sum);
                     });

@@ -274,37 +274,48 @@ class PairList {
     broad_phase_->find_pairs(pairs_.find(), threads_);
   }
 
-  /// Gives balls that are faster than cruising the bounds that they need, and lists what comes of that. The
-  /// broad phase did not know of it: for the sake of a few its cells would be wider.
+  /// Lists what those add that are faster than cruising. The broad phase did not know of it: for the sake of
+  /// a few its cells would be wider.
   template <class Way>
   void add_pairs_of_faster(const World<Dim>& world, const Way& way_m) {
     const std::span<const std::uint32_t> faster = cruise_.faster();
-    for (const std::uint32_t ball : faster) {
-      const double all_the_way_m = cruise_.times(world, ball) * half_skin_m_;
-      const float bound = rounded_up(world.radius[ball] + all_the_way_m * kRoundUp + 2.0 * rounding_m_);
-      if (!(bound > bound_[ball])) continue;
-      bound_[ball] = bound;
-      ++hurried_;
-      broad_phase_->bound_grew(ball);
-    }
+    for (const std::uint32_t ball : faster) widen_for_speed(world, ball);
     if (listed_ == Listed::kAll) return;
-    const auto before = [&](std::uint32_t ball) {
-      return Reach<Dim>{world.position[ball], bound_for(world, ball, way_m(ball))};
-    };
-    const auto now = [&](std::uint32_t ball) { return Reach<Dim>{world.position[ball], bound_[ball]}; };
     threads_.collect(faster.size(), pairs_.find(),
                      [&](std::size_t begin, std::size_t end, Column<BallPair>& found) {
                        std::vector<std::uint32_t> near;
                        for (const std::uint32_t ball : faster.subspan(begin, end - begin)) {
-                         broad_phase_->find_near(now(ball), near);
-                         for (const std::uint32_t other : near) {
-                           const bool listed = may_meet(before(ball), before(other));
-                           const bool lists_it = other < ball && bound_[other] > before(other).bound;
-                           if (listed || lists_it || !may_meet(now(ball), now(other))) continue;
-                           found.emplace_back(std::min(ball, other), std::max(ball, other));
-                         }
+                         broad_phase_->find_near({world.position[ball], bound_[ball]}, near);
+                         add_new_pairs(world, way_m, ball, near, found);
                        }
                      });
+  }
+
+  /// Gives a ball the bound that it needs at its speed until the list ends.
+  void widen_for_speed(const World<Dim>& world, std::uint32_t ball) {
+    const double all_the_way_m = cruise_.times(world, ball) * half_skin_m_;
+    const float bound = rounded_up(world.radius[ball] + all_the_way_m * kRoundUp + 2.0 * rounding_m_);
+    if (!(bound > bound_[ball])) return;
+    bound_[ball] = bound;
+    ++hurried_;
+    broad_phase_->bound_grew(ball);
+  }
+
+  /// The pairs of a ball with these others that may meet by bounds as they are, and by bound_for() did not;
+  /// of two balls whose bounds grew, the first has the pair.
+  template <class Way>
+  void add_new_pairs(const World<Dim>& world, const Way& way_m, std::uint32_t ball,
+                     std::span<const std::uint32_t> others, Column<BallPair>& found) const {
+    const auto now = [&](std::uint32_t i) { return Reach<Dim>{world.position[i], bound_[i]}; };
+    const auto before = [&](std::uint32_t i) {
+      return Reach<Dim>{world.position[i], bound_for(world, i, way_m(i))};
+    };
+    for (const std::uint32_t other : others) {
+      const bool listed = may_meet(before(ball), before(other));
+      const bool lists_it = other < ball && bound_[other] > before(other).bound;
+      if (listed || lists_it || !may_meet(now(ball), now(other))) continue;
+      found.emplace_back(std::min(ball, other), std::max(ball, other));
+    }
   }
 
   void sort_by_stages(const World<Dim>& world) {
