@@ -13,6 +13,7 @@
 #include "carom/shared_column.h"
 #include "carom/threads.h"
 #include "core/large_pages.h"
+#include "core/prefetch.h"
 #include "core/vec.h"
 #include "engine/engine.h"
 #include "scenario/scenario.h"
@@ -177,12 +178,12 @@ struct World {
 
   /// Has the processor load what the flight of a ball is known by.
   void fetch(std::size_t ball) const {
-    __builtin_prefetch(&position[ball]);
-    __builtin_prefetch(&velocity[ball]);
+    prefetch(&position[ball]);
+    prefetch(&velocity[ball]);
   }
 
   void fetch_number(std::size_t ball) const {
-    if (!number.empty()) __builtin_prefetch(&number[ball]);
+    if (!number.empty()) prefetch(&number[ball]);
   }
   void fetch_pair(const std::pair<std::uint32_t, std::uint32_t>& balls) const {
     fetch(balls.first);

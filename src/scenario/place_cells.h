@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/large_pages.h"
+#include "core/prefetch.h"
 #include "core/vec.h"
 #include "scenario/place_grid.h"
 #include "scenario/scenario.h"
@@ -269,8 +270,8 @@ class Cells {
 
   void fetch(const Grid::Block& block, bool with_names) const {
     grid_.for_each(block, [&](std::size_t index, const Grid::Place& /*place*/) {
-      __builtin_prefetch(&cells_[index]);
-      if (with_names) __builtin_prefetch(&names_[index]);
+      prefetch(&cells_[index]);
+      if (with_names) prefetch(&names_[index]);
       // Without it GCC takes this for a function without effect, and leaves out the calls.
       std::atomic_signal_fence(std::memory_order_seq_cst);
       return true;

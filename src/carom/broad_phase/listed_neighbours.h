@@ -11,6 +11,7 @@
 #include "carom/broad_phase/broad_phase.h"
 #include "carom/threads.h"
 #include "core/large_pages.h"
+#include "core/prefetch.h"
 
 namespace carom {
 
@@ -49,8 +50,8 @@ class ListedNeighbours {
   }
 
   /// Has the processor load where the neighbours of a ball stand; and, once it has, which ones they are.
-  void fetch(std::uint32_t ball) const { __builtin_prefetch(&start_[ball]); }
-  void fetch_all_of(std::uint32_t ball) const { __builtin_prefetch(neighbour_.data() + start_[ball]); }
+  void fetch(std::uint32_t ball) const { prefetch(&start_[ball]); }
+  void fetch_all_of(std::uint32_t ball) const { prefetch(neighbour_.data() + start_[ball]); }
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();

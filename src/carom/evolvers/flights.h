@@ -13,6 +13,7 @@
 #include "carom/broad_phase/reach.h"
 #include "carom/flight.h"
 #include "carom/world.h"
+#include "core/prefetch.h"
 
 namespace carom {
 
@@ -145,7 +146,7 @@ class Flights {
   /// Has the processor load what the flight of a ball is known by.
   void fetch(std::size_t ball) const {
     world_.fetch(ball);
-    __builtin_prefetch(&touched_[ball]);
+    prefetch(&touched_[ball]);
   }
 
   /// Where a ball is at its clock.
