@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -65,6 +67,17 @@ TEST_P(ThreadsOf, PassOnWhatOneThrows_AndWorkAgain) {
   std::atomic<std::size_t> reached = 0;
   threads.in_parallel(100, [&](std::size_t begin, std::size_t end) { reached += end - begin; });
   EXPECT_EQ(reached, 100U);
+}
+
+TEST_P(ThreadsOf, WorkAtOnce_AndAfterTheyFellAsleep) {
+  const Threads threads(GetParam());
+  std::atomic<std::size_t> reached = 0;
+  for (int job = 0; job < 100; ++job) {
+    // Far longer than they wait awake.
+    if (job % 50 == 25) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    threads.in_parallel(100, [&](std::size_t begin, std::size_t end) { reached += end - begin; });
+    ASSERT_EQ(reached, 100U * (static_cast<std::size_t>(job) + 1));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Counts, ThreadsOf, testing::Values(1, 2, 3, 8));
