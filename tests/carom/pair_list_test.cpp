@@ -124,6 +124,43 @@ TEST_P(PairListTwin, SameBits_AsAllPairs_ManyBallsAndSomeFast) {
   }
 }
 
+/// Beside a lattice of balls that all fly as fast, in the same direction, a few light ones that a heavy one
+/// meets at once, each in a row of its own: they fly on three times as fast, at another light one that comes,
+/// from nearer in one row and from farther in the next.
+Scenario light_balls_that_are_hit(int dimension) {
+  constexpr int kRows = 20;
+  const int side = dimension == 2 ? 48 : 13;
+  const double width = 3.0 * side;
+  Scenario scene = *gas(dimension, 2, 0.1, 2.0 * width + 40.0, 1);
+  scene.balls.clear();
+  const auto add = [&](const Vec3& place, const Vec3& velocity, double mass) {
+    Ball ball;
+    ball.radius = 0.5;
+    ball.position = place + Vec3(10.0, 10.0, dimension == 2 ? 0.0 : 10.0);
+    ball.velocity = velocity;
+    ball.mass = mass;
+    scene.balls.push_back(ball);
+  };
+  for (int k = 0; k < (dimension == 2 ? side * side : side * side * side); ++k) {
+    add(3.0 * Vec3(k % side, k / side % side, k / side / side), Vec3::UnitY(), 1.0);
+  }
+  for (int row = 0; row < kRows; ++row) {
+    const double gap = 0.2 * (row + 1);
+    const Vec3 place(width + 5.0, 3.0 * row, 0.0);
+    add(place, Vec3::UnitX(), 1.0);
+    add(place + 1.01 * Vec3::UnitX(), -Vec3::UnitX(), 1e-6);
+    add(place + (2.01 + gap) * Vec3::UnitX(), -Vec3::UnitX(), 1e-6);
+  }
+  return scene;
+}
+
+/// Those that they get to before the list ends are not listed with them when it is made.
+TEST_P(PairListTwin, SameBits_AsAllPairs_WhereImpactsMakeBallsFast) {
+  const auto& [evolver, dimension] = GetParam();
+  expect_same_bits(light_balls_that_are_hit(dimension), {evolver, "wrapped-grid", Listed::kNear},
+                   {evolver, "uniform-grid", Listed::kAll}, 80 / kPart);
+}
+
 /// In a step that is as long as many flights a ball that is hit turns round, and is hit again where it began:
 /// from there it meets whom it meets in short steps, though nobody was near the place of its first impact.
 TEST(PairList, FindsWhomABallMeets_ThatIsHitAgainAndAgainInAStep) {
