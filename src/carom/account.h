@@ -18,6 +18,19 @@ struct Account {
 
   Account() { tally.energy.known = true; }
 
+  /// What happened after this.
+  void add(const Account& later) {
+    tally.impacts += later.tally.impacts;
+    tally.wall_impacts += later.tally.wall_impacts;
+    tally.wall_push_Ns += later.tally.wall_push_Ns;
+    tally.external_impulse += later.tally.external_impulse;
+    tally.external_angular_impulse += later.tally.external_angular_impulse;
+    tally.energy.ball_impacts_J += later.tally.energy.ball_impacts_J;
+    tally.energy.wall_impacts_J += later.tally.energy.wall_impacts_J;
+    tally.energy.friction_J += later.tally.energy.friction_J;
+    tally.energy.correction_J += later.tally.energy.correction_J;
+  }
+
   /// An impulse on a movable ball, N s, that acts at `place`.
   void book(const Vec<Dim>& place, const Vec<Dim>& impulse) {
     const Vec3 wide = widened<Dim>(impulse);

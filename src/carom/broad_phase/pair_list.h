@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "carom/broad_phase/listed_neighbours.h"
 #include "carom/plane.h"
 #include "carom/world.h"
+#include "core/prefetch.h"
 
 namespace carom {
 
@@ -57,16 +59,25 @@ class PairList {
     time_s_ += duration_s;
   }
 
-  /// A ball was put this far away, m, beside what it travels.
-  void jumped(std::size_t ball, double way_m) {
+  /// Before threads say at once that balls jumped. @pre the list was made
+  void expect_jumps() {
     if (jumps_m_.empty()) jumps_m_.resize(bound_.size(), 0.0F);
+  }
+
+  /// A ball was put this far away, m, beside what it travels. Once expect_jumps() was called threads may say
+  /// so at once, each of other balls.
+  void jumped(std::size_t ball, double way_m) {
+    expect_jumps();
     jumps_m_[ball] = static_cast<float>((static_cast<double>(jumps_m_[ball]) + way_m) * kRoundUp);
-    farthest_jump_m_ = std::max(farthest_jump_m_, static_cast<double>(jumps_m_[ball]));
+    const double jump_m = jumps_m_[ball];
+    double farthest_m = farthest_jump_m_;
+    while (jump_m > farthest_m && !farthest_jump_m_.compare_exchange_weak(farthest_m, jump_m)) {
+    }
   }
 
   /// Has the processor load what is asked when the ball has jumped.
   void fetch_jump(std::size_t ball) const {
-    if (!jumps_m_.empty()) __builtin_prefetch(&jumps_m_[ball], 1);
+    if (!jumps_m_.empty()) prefetch(&jumps_m_[ball]);
   }
 
   /// Nothing holds any more.
@@ -186,11 +197,8 @@ class PairList {
     };
     if constexpr (kFieldsAct) {
       pairs_.test(stage_at(gone_m(way_m) + 2.0 * rounding_m_), threads_, found, test);
-    } else if (listed_ == Listed::kNear) {
-      // Few, most of which touch: what this thread loads here it needs next. Shared, that took longer.
-      pairs = pairs_.take(time_s_ + duration_s);
-      test(std::size_t{0}, pairs.size(), found);
     } else {
+      if (listed_ == Listed::kNear) pairs = pairs_.take(time_s_ + duration_s);
       threads_.collect(pairs.size(), found, test);
     }
   }
@@ -418,7 +426,7 @@ class PairList {
   double rounding_m_ = 0.0;  ///< of coordinates, in a step
   double farthest_m_ = 0.0;  ///< no coordinate is larger
   std::size_t hurried_ = 0;  ///< times that a ball added pairs
-  double farthest_jump_m_ = 0.0;
+  std::atomic<double> farthest_jump_m_ = 0.0;
   Column<float> jumps_m_;  ///< of each ball; empty before the first
   Column<float> bound_;    ///< m, radius and how far the ball may get from where it was
   std::conditional_t<kFieldsAct, DuePairs, FlyingPairs<Dim>> pairs_;

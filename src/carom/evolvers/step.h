@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <iterator>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "carom/effects/slab.h"
 #include "carom/evolvers/parts.h"
 #include "carom/evolvers/resting.h"
+#include "carom/evolvers/touch.h"
+#include "carom/evolvers/touch_clusters.h"
 #include "carom/laws/frictionless.h"
 
 namespace carom {
@@ -52,7 +55,7 @@ class StepEvolver final : public Simulation {
         wall_surface_(scene.wall_contact),
         gravity_(flattened<kDim>(scene.effects.gravity.value_or(Vec3::Zero()))),
         acceleration_(Traits::kAccelerates ? world_.size() : 0),
-        is_landed_(Traits::kAccelerates ? 0 : world_.size()) {
+        touched_(world_.size()) {
     if constexpr (Traits::kSheets) {
       add_slabs<kDim>(scene, planes_);
       add_barriers<kDim>(scene, planes_);
@@ -64,6 +67,7 @@ class StepEvolver final : public Simulation {
       begin_step(step_s);
       find_contacts();
       land();
+      settle_isolated();
       resolve_impacts();
       separate();
       take_off();
@@ -89,18 +93,8 @@ class StepEvolver final : public Simulation {
   /// left approaching goes on in the next step.
   static constexpr int kMostSweeps = 64;
 
-  struct Touch {
-    std::uint32_t a;
-    std::uint32_t b;
-    bool plane;
-    std::uint64_t rank;  ///< among those of pairs, or of planes
-
-    /// Pairs by their balls' numbers, then planes, each with its balls.
-    bool operator<(const Touch& other) const {
-      return plane != other.plane ? other.plane : rank < other.rank;
-    }
-    bool operator==(const Touch& other) const { return plane == other.plane && rank == other.rank; }
-  };
+  /// So many contacts before one is looked at its balls are fetched from memory.
+  static constexpr std::size_t kAhead = 8;
 
   void begin_step(double step_s) {
     field_speed_ = 0.0;
@@ -129,7 +123,13 @@ class StepEvolver final : public Simulation {
     near_.template for_each_due<Traits::kAccelerates ? 0 : 32>(
         world_, 0.0, 0.0, touches_, [this](std::uint32_t a, std::uint32_t b) { return overlap(a, b); },
         [this](std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) { touch(a, b, found); });
-    for (const auto& [ball, plane] : near_.besides()) touch_plane(ball, plane);
+    const std::span<const BallPair> besides = near_.besides();
+    threads_.collect(besides.size(), touches_,
+                     [&](std::size_t begin, std::size_t end, std::vector<Touch>& found) {
+                       for (const auto& [ball, plane] : besides.subspan(begin, end - begin)) {
+                         touch_plane(ball, plane, found);
+                       }
+                     });
     // The list is in an order of its own; the order of the contacts decides what happens.
     std::sort(touches_.begin(), touches_.end());
     touches_.erase(std::unique(touches_.begin(), touches_.end()), touches_.end());
@@ -154,65 +154,73 @@ class StepEvolver final : public Simulation {
   void touch(std::uint32_t a, std::uint32_t b, std::vector<Touch>& found) const {
     if (!world_.before(a, b)) std::swap(a, b);
     if (world_.inverse_mass[a] + world_.inverse_mass[b] == 0.0) return;
-    found.push_back({a, b, false, rank(world_.number_of(a), world_.number_of(b))});
+    found.push_back(Touch::of_balls(a, b, world_.number_of(a), world_.number_of(b)));
   }
 
-  void touch_plane(std::uint32_t ball, std::uint32_t plane) {
+  void touch_plane(std::uint32_t ball, std::uint32_t plane, std::vector<Touch>& found) const {
     if (planes_[plane].gap(place(ball), world_.radius[ball]) > 0.0) return;
     if constexpr (Traits::kSheets) {
       if (!planes_[plane].faces(place(ball))) return;
     }
     if (world_.inverse_mass[ball] == 0.0) return;
-    touches_.push_back({ball, plane, true, rank(plane, world_.number_of(ball))});
+    found.push_back(Touch::of_plane(ball, plane, world_.number_of(ball)));
   }
 
-  static std::uint64_t rank(std::uint32_t first, std::uint32_t second) {
-    return std::uint64_t{first} << 32U | second;
-  }
-
-  // --- impacts
+  // --- balls in contact
   // Where balls fly straight they stand in memory where they were when the list of pairs was made, or would
   // have been: one that is hit lands, and takes off from where its new flight would have begun.
 
   void land() {
+    touched_.note(touches_);
     if constexpr (Traits::kAccelerates) return;
-    landed_.clear();
-    for (const Touch& touch : touches_) {
-      land(touch.a);
-      if (!touch.plane) land(touch.b);
-    }
-    for (const std::uint32_t ball : landed_) is_landed_[ball] = false;
-  }
-
-  void land(std::uint32_t ball) {
-    if (is_landed_[ball]) return;
-    is_landed_[ball] = true;
-    landed_.push_back(ball);
-    world_.position.set(ball, place(ball));
+    for_each_touched([this](std::uint32_t ball) { world_.position.set(ball, place(ball)); });
   }
 
   void take_off() {
-    if constexpr (Traits::kAccelerates) return;
-    for (const std::uint32_t ball : landed_) {
-      // So far back that its place would be rounded too much.
-      if (near_.cruise().times(world_, ball) > Cruise<kDim>::kMostTimes) return land_all();
-    }
-    for (const std::uint32_t ball : landed_) world_.position.set(ball, world_.place_after(-flown_s_, ball));
-    for (const std::uint32_t ball : landed_) {
-      if (near_.cruise().times(world_, ball) > 1.0) hurry(ball);
-    }
     if constexpr (!Traits::kAccelerates) {
-      if (near_.holds()) near_.expect_anew(world_, flown_s_, landed_);
+      find_faster();
+      for (const std::uint32_t ball : faster_) {
+        // So far back that its place would be rounded too much.
+        if (near_.cruise().times(world_, ball) > Cruise<kDim>::kMostTimes) return land_all();
+      }
+      for_each_touched(
+          [this](std::uint32_t ball) { world_.position.set(ball, world_.place_after(-flown_s_, ball)); });
+      for (const std::uint32_t ball : faster_) hurry(ball);
+      if (near_.holds()) near_.expect_anew(world_, flown_s_, touched_.balls());
     }
+  }
+
+  /// Which balls in contact are faster than cruising.
+  void find_faster() {
+    const std::span<const std::uint32_t> balls = touched_.balls();
+    faster_.clear();
+    threads_.collect(balls.size(), faster_,
+                     [&](std::size_t begin, std::size_t end, std::vector<std::uint32_t>& found) {
+                       for (const std::uint32_t ball : balls.subspan(begin, end - begin)) {
+                         if (near_.cruise().times(world_, ball) > 1.0) found.push_back(ball);
+                       }
+                     });
+  }
+
+  template <class At>
+  void for_each_touched(const At& at) {
+    const std::span<const std::uint32_t> balls = touched_.balls();
+    threads_.in_parallel(balls.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        world_.fetch(balls[std::min(k + kAhead, end - 1)]);
+        at(balls[k]);
+      }
+    });
   }
 
   /// Ends the list of pairs where balls have landed already that are hit.
   void land_all() {
+    const std::span<const std::uint32_t> balls = touched_.balls();
     landed_at_.clear();
-    for (const std::uint32_t ball : landed_) landed_at_.push_back(world_.position[ball]);
+    for (const std::uint32_t ball : balls) landed_at_.push_back(world_.position[ball]);
     world_.fly(flown_s_, threads_);
     flown_s_ = 0.0;
-    for (std::size_t k = 0; k < landed_.size(); ++k) world_.position.set(landed_[k], landed_at_[k]);
+    for (std::size_t k = 0; k < balls.size(); ++k) world_.position.set(balls[k], landed_at_[k]);
     near_.end();
   }
 
@@ -223,58 +231,101 @@ class StepEvolver final : public Simulation {
                 [this](std::size_t any) { return place(any); });
   }
 
+  // --- impacts
+
+  /// An isolated contact, whose balls are in no other, neither changes anything for another one nor is
+  /// changed by it. In a gas almost all are isolated: threads share them, and each is done with while its
+  /// balls are at hand. What is left has more than one contact to a ball, and an order.
+  void settle_isolated() {
+    if (cluster_law_) return;  // which has a solution of its own for one contact, too
+    near_.expect_jumps();
+    isolated_.clear();
+    const auto is_isolated = [this](const Touch& touch) { return touched_.is_isolated(touch); };
+    std::copy_if(touches_.begin(), touches_.end(), std::back_inserter(isolated_), is_isolated);
+    std::erase_if(touches_, is_isolated);
+    // Accounts are of so many contacts however many threads there are: the sum is the same to the bit.
+    constexpr std::size_t kOfAnAccount = 64;
+    const std::size_t count = (isolated_.size() + kOfAnAccount - 1) / kOfAnAccount;
+    accounts_.clear();
+    threads_.collect(count, accounts_,
+                     [&](std::size_t begin, std::size_t end, std::vector<Account<kDim>>& found) {
+                       for (std::size_t k = begin; k < end; ++k) {
+                         const std::size_t first = k * kOfAnAccount;
+                         found.push_back(settle(first, std::min(first + kOfAnAccount, isolated_.size())));
+                       }
+                     });
+    for (const Account<kDim>& each : accounts_) account_.add(each);
+  }
+
+  /// Of isolated contacts from one up to, but without, another.
+  Account<kDim> settle(std::size_t begin, std::size_t end) {
+    Account<kDim> account;
+    for (std::size_t k = begin; k < end; ++k) {
+      fetch(isolated_[std::min(k + kAhead, isolated_.size() - 1)]);
+      int sweep = 0;
+      while (sweep < kMostSweeps && hit(isolated_[k], sweep, account)) ++sweep;
+      separate(isolated_[k], account);
+    }
+    return account;
+  }
+
   void resolve_impacts() {
     if (cluster_law_) {
-      resolve_clusters();
+      clusters_.for_each(world_, touches_,
+                         [this](std::span<const Touch> together) { resolve_cluster(together); });
       return;
     }
     bool approaching = !touches_.empty();
     for (int sweep = 0; sweep < kMostSweeps && approaching; ++sweep) {
       approaching = false;
       for (const Touch& touch : touches_) {
-        approaching = (touch.plane ? hit_plane(touch, sweep) : hit_ball(touch, sweep)) || approaching;
+        approaching = hit(touch, sweep, account_) || approaching;
       }
     }
   }
 
-  /// Returns whether the balls approached.
-  bool hit_ball(const Touch& touch, int sweep) {
+  /// Returns whether they approached.
+  bool hit(const Touch& touch, int sweep, Account<kDim>& account) {
+    return touch.plane() ? hit_plane(touch, sweep, account) : hit_ball(touch, sweep, account);
+  }
+
+  bool hit_ball(const Touch& touch, int sweep, Account<kDim>& account) {
     const Place normal = normal_between<kDim>(world_.position[touch.a], world_.position[touch.b]);
     const double v_n = normal.dot(world_.velocity[touch.b] - world_.velocity[touch.a]);
     const double speeds = world_.velocity[touch.a].norm() + world_.velocity[touch.b].norm();
     if (v_n >= -velocity_rounding(speeds)) return false;
-    count(v_n, sweep);
+    count(v_n, sweep, account);
     const Place impulse =
         Law::template between<kDim>(world_, touch.a, touch.b, normal, rebounding(surface_, v_n));
-    account_.template book_pair<Law::kFriction>(world_, touch.a, touch.b, normal, impulse);
+    account.template book_pair<Law::kFriction>(world_, touch.a, touch.b, normal, impulse);
     if constexpr (Law::kFriction) {
       if (!is_fixed(touch.a) && !is_fixed(touch.b)) {
-        account_.book_moment(gap_between(touch.a, touch.b) * normal, impulse);
+        account.book_moment(gap_between(touch.a, touch.b) * normal, impulse);
       }
     }
     return true;
   }
 
-  bool hit_plane(const Touch& touch, int sweep) {
+  bool hit_plane(const Touch& touch, int sweep, Account<kDim>& account) {
     const Plane<kDim>& plane = planes_[touch.b];
     if constexpr (Traits::kSheets) {
       if (!plane.faces(world_.position[touch.a])) return false;  // it has passed in an earlier sweep
     }
     const double v_n = plane.normal.dot(world_.velocity[touch.a]);
     if (v_n >= -velocity_rounding(world_.velocity[touch.a].norm())) return false;
-    count(v_n, sweep);
+    count(v_n, sweep, account);
     if constexpr (Traits::kSheets) {
       if (plane.barrier != kSolid) {
         const Place before = world_.position[touch.a];
-        barriers_.meet(world_, touch.a, plane, account_);
+        barriers_.meet(world_, touch.a, plane, account);
         near_.jumped(touch.a, (world_.position[touch.a] - before).norm());
         return true;
       }
     }
     const Place impulse =
         Law::template on_wall<kDim>(world_, touch.a, plane.normal, rebounding(wall_surface_, v_n));
-    if (is_impact(v_n, sweep)) ++account_.tally.wall_impacts;
-    account_.template book_plane<Law::kFriction>(world_, touch.a, plane.normal, impulse);
+    if (is_impact(v_n, sweep)) ++account.tally.wall_impacts;
+    account.template book_plane<Law::kFriction>(world_, touch.a, plane.normal, impulse);
     return true;
   }
 
@@ -284,57 +335,27 @@ class StepEvolver final : public Simulation {
     return surface;
   }
 
-  void count(double v_n, int sweep) {
-    if (is_impact(v_n, sweep)) ++account_.tally.impacts;
+  void count(double v_n, int sweep, Account<kDim>& account) const {
+    if (is_impact(v_n, sweep)) ++account.tally.impacts;
   }
 
   bool is_impact(double v_n, int sweep) const { return sweep == 0 && -v_n > field_speed_; }
 
-  // --- contacts that hang together, under a law for several at once
-
-  void resolve_clusters() {
-    root_.resize(world_.size());
-    std::iota(root_.begin(), root_.end(), 0U);
-    for (const Touch& touch : touches_) {
-      // Immovable balls and planes pass nothing on.
-      if (touch.plane || world_.inverse_mass[touch.a] * world_.inverse_mass[touch.b] == 0.0) continue;
-      const std::uint32_t one = root_of(touch.a);
-      const std::uint32_t other = root_of(touch.b);
-      world_.before(one, other) ? root_[other] = one : root_[one] = other;
-    }
-    const auto cluster_of = [this](const Touch& touch) {
-      return world_.number_of(root_of(touch.plane || world_.inverse_mass[touch.a] > 0.0 ? touch.a : touch.b));
-    };
-    std::stable_sort(touches_.begin(), touches_.end(),
-                     [&](const Touch& x, const Touch& y) { return cluster_of(x) < cluster_of(y); });
-    for (std::size_t begin = 0; begin < touches_.size();) {
-      std::size_t end = begin;
-      while (end < touches_.size() && cluster_of(touches_[end]) == cluster_of(touches_[begin])) ++end;
-      resolve_cluster(begin, end);
-      begin = end;
-    }
-  }
-
-  std::uint32_t root_of(std::uint32_t ball) const {
-    while (root_[ball] != ball) ball = root_[ball];
-    return ball;
-  }
-
-  void resolve_cluster(std::size_t begin, std::size_t end) {
+  /// By a law for several contacts at once. @pre they hang together
+  void resolve_cluster(std::span<const Touch> touches) {
     contacts_.clear();
     bool approaching = false;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Touch& touch = touches_[k];
-      const Place normal = touch.plane
+    for (const Touch& touch : touches) {
+      const Place normal = touch.plane()
                                ? planes_[touch.b].normal
                                : normal_between<kDim>(world_.position[touch.a], world_.position[touch.b]);
-      const Place v =
-          touch.plane ? world_.velocity[touch.a] : Place(world_.velocity[touch.b] - world_.velocity[touch.a]);
+      const Place v = touch.plane() ? world_.velocity[touch.a]
+                                    : Place(world_.velocity[touch.b] - world_.velocity[touch.a]);
       const double v_n = normal.dot(v);
       approaching = approaching || v_n < 0.0;
-      const Contact surface = rebounding(touch.plane ? wall_surface_ : surface_, v_n);
-      contacts_.push_back({touch.a, touch.b, touch.plane, normal, surface.restitution});
-      if (v_n < 0.0) count(v_n, 0);
+      const Contact surface = rebounding(touch.plane() ? wall_surface_ : surface_, v_n);
+      contacts_.push_back({touch.a, touch.b, touch.plane(), normal, surface.restitution});
+      if (v_n < 0.0) count(v_n, 0, account_);
     }
     if (!approaching) return;
     account_.open_contacts(world_, contacts_);
@@ -346,40 +367,46 @@ class StepEvolver final : public Simulation {
 
   /// Moves apart what overlaps, contact by contact.
   void separate() {
-    constexpr std::size_t kAhead = 8;
     for (std::size_t k = 0; k < touches_.size(); ++k) {
-      const Touch& touch = touches_[k];
-      const Touch& soon = touches_[std::min(k + kAhead, touches_.size() - 1)];
-      near_.fetch_jump(soon.a);
-      if (!soon.plane) near_.fetch_jump(soon.b);
-      if (touch.plane) {
-        const Plane<kDim>& plane = planes_[touch.b];
-        const double gap = plane.gap(world_.position[touch.a], world_.radius[touch.a]);
-        if (gap >= 0.0 || !plane.faces(world_.position[touch.a])) continue;
-        shift(touch.a, -gap * plane.normal);
-      } else {
-        separate_balls(touch.a, touch.b);
-      }
+      fetch(touches_[std::min(k + kAhead, touches_.size() - 1)]);
+      separate(touches_[k], account_);
     }
   }
 
-  void separate_balls(std::uint32_t a, std::uint32_t b) {
+  /// Has the processor load what is asked about the balls of a contact.
+  void fetch(const Touch& touch) const {
+    world_.fetch(touch.a);
+    near_.fetch_jump(touch.a);
+    if (touch.plane()) return;
+    world_.fetch(touch.b);
+    near_.fetch_jump(touch.b);
+  }
+
+  void separate(const Touch& touch, Account<kDim>& account) {
+    if (!touch.plane()) return separate_balls(touch.a, touch.b, account);
+    const Plane<kDim>& plane = planes_[touch.b];
+    const double gap = plane.gap(world_.position[touch.a], world_.radius[touch.a]);
+    if (gap >= 0.0 || !plane.faces(world_.position[touch.a])) return;
+    shift(touch.a, -gap * plane.normal, account);
+  }
+
+  void separate_balls(std::uint32_t a, std::uint32_t b, Account<kDim>& account) {
     const double gap = gap_between(a, b);
     if (gap >= 0.0) return;
     const Place normal = normal_between<kDim>(world_.position[a], world_.position[b]);
     const double share = gap / (world_.inverse_mass[a] + world_.inverse_mass[b]);
-    if (!is_fixed(a)) shift(a, (share * world_.inverse_mass[a]) * normal);
-    if (!is_fixed(b)) shift(b, -(share * world_.inverse_mass[b]) * normal);
+    if (!is_fixed(a)) shift(a, (share * world_.inverse_mass[a]) * normal, account);
+    if (!is_fixed(b)) shift(b, -(share * world_.inverse_mass[b]) * normal, account);
   }
 
   /// Puts a movable ball somewhere else, with the velocity that it has; under gravity that changes its
   /// energy.
-  void shift(std::uint32_t ball, const Place& way) {
+  void shift(std::uint32_t ball, const Place& way, Account<kDim>& account) {
     world_.position.set(ball, world_.position[ball] + way);
     near_.jumped(ball, way.norm());
-    account_.book_moment(way, world_.velocity[ball] / world_.inverse_mass[ball]);
+    account.book_moment(way, world_.velocity[ball] / world_.inverse_mass[ball]);
     if constexpr (Traits::kAccelerates) {
-      account_.tally.energy.correction_J -= gravity_.dot(way) / world_.inverse_mass[ball];
+      account.tally.energy.correction_J -= gravity_.dot(way) / world_.inverse_mass[ball];
     }
   }
 
@@ -406,10 +433,12 @@ class StepEvolver final : public Simulation {
   Account<kDim> account_;
 
   std::vector<Touch> touches_;
-  std::vector<std::uint32_t> landed_;
-  std::vector<bool> is_landed_;  ///< of each ball, while balls land
+  std::vector<Touch> isolated_;
+  std::vector<Account<kDim>> accounts_;  ///< of isolated contacts
+  TouchedBalls touched_;
+  std::vector<std::uint32_t> faster_;
   std::vector<Place> landed_at_;
-  std::vector<std::uint32_t> root_;
+  TouchClusters<kDim> clusters_;
   std::vector<ClosedContact<kDim>> contacts_;
 };
 
