@@ -48,14 +48,16 @@ class Threads {
   /// The same with part(first, end, found), which appends to `found`.
   template <class Found, class Part>
   void collect(std::size_t size, Found& found, const Part& part) const {
-    std::vector<Found> more(count_ - 1);
+    std::vector<const Found*> more(count_ - 1);
     run([&](std::size_t thread) {
       if (thread == 0) return part(std::size_t{0}, begin_of(1, size), found);
-      Found own;
+      // Each thread keeps its own: memory from the system comes page by page, and cleared.
+      thread_local Found own;
+      own.clear();
       part(begin_of(thread, size), begin_of(thread + 1, size), own);
-      more[thread - 1] = std::move(own);
+      more[thread - 1] = &own;
     });
-    for (const Found& each : more) found.insert(found.end(), each.begin(), each.end());
+    for (const Found* each : more) found.insert(found.end(), each->begin(), each->end());
   }
 
   /// The largest of value(i), i < size, as largest_in().
