@@ -60,6 +60,33 @@ class Threads {
     for (const Found* each : more) found.insert(found.end(), each->begin(), each->end());
   }
 
+  /// The same of what takes longer in some places than in others, dealt out in pieces. What is found is in an
+  /// order that depends on the number of threads.
+  template <class Found, class Part>
+  void collect_dealt(std::size_t size, Found& found, const Part& part) const {
+    constexpr std::size_t kPiece = 128;
+    collect(count_, found, [&](std::size_t begin, std::size_t end, Found& own) {
+      for (std::size_t hand = begin; hand < end; ++hand) {
+        for (std::size_t first = hand * kPiece; first < size; first += count_ * kPiece) {
+          part(first, std::min(first + kPiece, size), own);
+        }
+      }
+    });
+  }
+
+  /// Sorts them. @pre of two that are equal it does not matter which comes first
+  template <class Value>
+  void sort(std::vector<Value>& values) const {
+    in_parallel(values.size(), [&](std::size_t begin, std::size_t end) {
+      std::sort(values.data() + begin, values.data() + end);
+    });
+    for (std::size_t thread = 1; thread < count_; ++thread) {
+      const std::size_t sorted = begin_of(thread, values.size());
+      const std::size_t end = begin_of(thread + 1, values.size());
+      std::inplace_merge(values.data(), values.data() + sorted, values.data() + end);
+    }
+  }
+
   /// The largest of value(i), i < size, as largest_in().
   template <class Value>
   double largest(std::size_t size, const Value& value) const {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "carom/compose.h"
+#include "core/random.h"
 #include "tests/support/numbers.h"
 #include "tests/support/scenes.h"
 
@@ -44,6 +46,34 @@ TEST_P(ThreadsOf, CollectInOrder_BehindWhatIsThere) {
   std::vector<std::size_t> expected(101, 1000);
   std::iota(expected.begin() + 1, expected.end(), std::size_t{0});
   EXPECT_EQ(found, expected);
+}
+
+TEST_P(ThreadsOf, CollectWhatIsDealtOut_EachOnce) {
+  const Threads threads(GetParam());
+  for (const std::size_t size : {0U, 1U, 128U, 129U, 5000U}) {
+    std::vector<std::size_t> found = {size};
+    threads.collect_dealt(size, found,
+                          [](std::size_t begin, std::size_t end, std::vector<std::size_t>& more) {
+                            for (std::size_t i = begin; i < end; ++i) more.push_back(i);
+                          });
+    std::sort(found.begin(), found.end());
+    std::vector<std::size_t> expected(size + 1);
+    std::iota(expected.begin(), expected.end(), std::size_t{0});
+    EXPECT_EQ(found, expected) << size;
+  }
+}
+
+TEST_P(ThreadsOf, Sort) {
+  const Threads threads(GetParam());
+  Random random(7);
+  for (const std::size_t size : {0U, 1U, 2U, 9U, 1000U}) {
+    std::vector<double> values(size);
+    for (double& each : values) each = random.uniform();
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    threads.sort(values);
+    EXPECT_EQ(values, sorted) << size;
+  }
 }
 
 TEST_P(ThreadsOf, FindTheLargest_NotANumberCountsForNothing) {

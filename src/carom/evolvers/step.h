@@ -131,7 +131,7 @@ class StepEvolver final : public Simulation {
                        }
                      });
     // The list is in an order of its own; the order of the contacts decides what happens.
-    std::sort(touches_.begin(), touches_.end());
+    threads_.sort(touches_);
     touches_.erase(std::unique(touches_.begin(), touches_.end()), touches_.end());
   }
 
