@@ -233,6 +233,20 @@ void race_in_numbers(const Effort& effort, Findings& findings) {
   }
 }
 
+// Two threads beside one, which take turns.
+void race_by_threads(const Effort& effort, Findings& findings) {
+  say(fmt::format("two threads, {} balls", effort.most_balls));
+  constexpr double kManyLists = 15.0;
+  const Scenario scene = scene_of(gas(3), effort.most_balls);
+  const auto with = [&](std::size_t threads) {
+    return Runner{"carom:step", &scene, Unit::ball_step, kManyLists, threads};
+  };
+  const std::vector<Cost> costs = race({with(1), with(2)}, effort.rounds, effort.shortest_s);
+  findings.goals.push_back(
+      {fmt::format("step, times faster with two threads than with one, {} balls in space", effort.most_balls),
+       "", true, 1.7, ratio(costs[0].ns, costs[1].ns)});
+}
+
 fs::path own_program() {
   return program_prefix() / "bin/carom-peers";
 }
@@ -305,6 +319,7 @@ Json measure(const Effort& effort) {
   race_a_million(effort, findings);
   race_in_the_plane(effort, findings);
   race_in_numbers(effort, findings);
+  race_by_threads(effort, findings);
   time_the_harness(effort, findings);
   const Machine machine = this_machine();
   Json goals = Json::array();

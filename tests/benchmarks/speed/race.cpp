@@ -3,7 +3,9 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "app/layout.h"
 #include "carom/carom_engine.h"
@@ -28,10 +30,11 @@ bool is_own(const std::string& engine) {
 
 std::unique_ptr<Simulation> set_up(const Runner& runner) {
   // Made here and kept: a simulation may go on using its engine.
-  static std::map<std::string, std::unique_ptr<Engine>> own;
+  static std::map<std::pair<std::string, std::size_t>, std::unique_ptr<Engine>> own;
   if (is_own(runner.engine)) {
-    std::unique_ptr<Engine>& engine = own[runner.engine];
-    if (!engine) engine = make_carom_engine(runner.engine);
+    const std::size_t threads = std::max<std::size_t>(runner.threads, 1);
+    std::unique_ptr<Engine>& engine = own[{runner.engine, threads}];
+    if (!engine) engine = make_carom_engine(runner.engine, threads);
     return engine->create(*runner.scene, "faithful");
   }
   return open_engine_module(engine_folder() / (runner.engine + ".so")).create(*runner.scene, "faithful");
@@ -51,8 +54,9 @@ class Taker final : public ::benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
       const double count = run.counters.at("count");
-      costs[run.run_name.function_name].values.push_back(kNanosecondsPerSecond * run.cpu_accumulated_time /
-                                                         count);
+      const bool real = run.run_name.time_type == "real_time";
+      const double taken_s = real ? run.real_accumulated_time : run.cpu_accumulated_time;
+      costs[run.run_name.function_name].values.push_back(kNanosecondsPerSecond * taken_s / count);
     }
   }
 
@@ -80,9 +84,11 @@ std::vector<Cost> race(const std::vector<Runner>& runners, int rounds, double sh
     simulations.push_back(set_up(runner));
     Simulation& simulation = *simulations.back();
     simulation.advance(kStep_s, kStepsBefore);
-    ::benchmark::RegisterBenchmark(number.c_str(), [&runner, &simulation](::benchmark::State& state) {
-      advance(state, runner, simulation);
-    })->MinTime(shortest_s * runner.longer);
+    auto* timed = ::benchmark::RegisterBenchmark(
+        number.c_str(),
+        [&runner, &simulation](::benchmark::State& state) { advance(state, runner, simulation); });
+    timed->MinTime(shortest_s * runner.longer);
+    if (runner.threads != Runner::kAlone) timed->UseRealTime();
   }
   for (int round = 0; round < rounds; ++round) ::benchmark::RunSpecifiedBenchmarks(&taker, "all");
   std::vector<Cost> costs;
