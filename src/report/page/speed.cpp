@@ -123,12 +123,11 @@ void add_goals_and_growth(Node section, const Json& speed) {
   add(section, "p", {{"class", "about"}},
       fmt::format(
           "Measured by the benchmark (tests/benchmarks/run), not by the run that made this page, on {} with "
-          "{} "
-          "cores ({}, build {}). Every engine advances the same balls, in its faithful profile, one after "
-          "the "
-          "other in each of up to {} rounds, and nothing is recorded. What counts is the CPU time of one "
-          "thread. A value is the median of the rounds, with the lowest and the highest; a ratio is taken "
-          "round by round, so that what else the machine does meets both.",
+          "{} cores ({}, build {}). Every engine advances the same balls, in its faithful profile, one after "
+          "the other in each of up to {} rounds, and nothing is recorded. What counts is the CPU time of one "
+          "thread, and real time where two share the balls. A value is the median of the rounds, with the "
+          "lowest and the highest; a ratio is taken round by round, so that what else the machine does meets "
+          "both.",
           machine.at("cpu").get<std::string>(), machine.at("cores").get<int>(),
           machine.at("compiler").get<std::string>(), machine.at("build").get<std::string>(),
           speed.at("rounds").get<int>()));
