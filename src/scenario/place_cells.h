@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -272,8 +271,6 @@ class Cells {
     grid_.for_each(block, [&](std::size_t index, const Grid::Place& /*place*/) {
       prefetch(&cells_[index]);
       if (with_names) prefetch(&names_[index]);
-      // Without it GCC takes this for a function without effect, and leaves out the calls.
-      std::atomic_signal_fence(std::memory_order_seq_cst);
       return true;
     });
   }

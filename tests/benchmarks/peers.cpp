@@ -239,7 +239,7 @@ void race_by_threads(const Effort& effort, Findings& findings) {
   constexpr double kManyLists = 15.0;
   const Scenario scene = scene_of(gas(3), effort.most_balls);
   const auto with = [&](std::size_t threads) {
-    return Runner{"carom:step", &scene, Unit::ball_step, kManyLists, threads};
+    return Runner{"carom:step", &scene, Unit::ball_step, kManyLists, threads, true};
   };
   const std::vector<Cost> costs = race({with(1), with(2)}, effort.rounds, effort.shortest_s);
   findings.goals.push_back(

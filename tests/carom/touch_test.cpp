@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <set>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "carom/evolvers/touch_clusters.h"

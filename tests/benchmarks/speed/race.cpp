@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -32,9 +31,8 @@ std::unique_ptr<Simulation> set_up(const Runner& runner) {
   // Made here and kept: a simulation may go on using its engine.
   static std::map<std::pair<std::string, std::size_t>, std::unique_ptr<Engine>> own;
   if (is_own(runner.engine)) {
-    const std::size_t threads = std::max<std::size_t>(runner.threads, 1);
-    std::unique_ptr<Engine>& engine = own[{runner.engine, threads}];
-    if (!engine) engine = make_carom_engine(runner.engine, threads);
+    std::unique_ptr<Engine>& engine = own[{runner.engine, runner.threads}];
+    if (!engine) engine = make_carom_engine(runner.engine, runner.threads);
     return engine->create(*runner.scene, "faithful");
   }
   return open_engine_module(engine_folder() / (runner.engine + ".so")).create(*runner.scene, "faithful");
@@ -88,7 +86,7 @@ std::vector<Cost> race(const std::vector<Runner>& runners, int rounds, double sh
         number.c_str(),
         [&runner, &simulation](::benchmark::State& state) { advance(state, runner, simulation); });
     timed->MinTime(shortest_s * runner.longer);
-    if (runner.threads != Runner::kAlone) timed->UseRealTime();
+    if (runner.real_time) timed->UseRealTime();
   }
   for (int round = 0; round < rounds; ++round) ::benchmark::RunSpecifiedBenchmarks(&taker, "all");
   std::vector<Cost> costs;

@@ -20,15 +20,12 @@ struct Runner {
   std::string engine;  ///< as on the command line: "carom:step", "bullet-f64"
   const Scenario* scene = nullptr;
   Unit unit = Unit::ball_step;
-  double longer = 1.0;  ///< it is timed so many times as long as others at least
-  /// That share the balls, of the hand-written engine; then real time is taken, which they are for.
-  std::size_t threads = kAlone;
-
-  static constexpr std::size_t kAlone = 0;
+  double longer = 1.0;      ///< it is timed so many times as long as others at least
+  std::size_t threads = 1;  ///< that share the balls, in the hand-written engine
+  bool real_time = false;   ///< is taken, in place of CPU time
 };
 
-/// CPU time, or real time where the runner has threads, ns, of one ball in one step of 1/240 s, or of one
-/// impact between two balls.
+/// Time, ns, of one ball in one step of 1/240 s, or of one impact between two balls.
 struct Cost {
   std::string engine;
   std::size_t balls = 0;
